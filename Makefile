@@ -1,0 +1,78 @@
+# The short way to everything. Targets install what is missing (Debian 12, apt), ask nothing and may
+# be called again. See README.md.
+
+SCENARIO ?= config/scenarios/rising-boxes.yaml
+# More arguments for the program, e.g. make run ARGS=--video
+ARGS ?=
+# More arguments for CMake, e.g. make test CMAKE_ARGS=-DHOPSCOTCH_WERROR=ON
+CMAKE_ARGS ?=
+PREFIX ?= /usr/local
+
+PROGRAM := build/release/hopscotch
+BENCHES := planner mpc perception sim tick
+FUZZERS := $(basename $(notdir $(wildcard tests/fuzz/*_fuzz.cpp)))
+FUZZ_SECONDS ?= 60
+
+.PHONY: help run test build install bench campaigns check-deep format lint clean packages
+
+help:
+	@echo "make run         install what is missing, build, run the continuous-jumping demo"
+	@echo "make test        install what is missing, build, run the whole test suite"
+	@echo "make build       the program, build/release/hopscotch"
+	@echo "make bench       the figures that the README quotes, measured here"
+	@echo "make campaigns   every scenario with 20 seeds, success rates with intervals"
+	@echo "make check-deep  thread and address sanitizers, long fuzzing, clang-tidy on everything"
+	@echo "make format      lay out the sources by .clang-format"
+	@echo "make lint        layout, include and size rules; clang-tidy on what changed"
+	@echo "make install     to PREFIX (default /usr/local)"
+	@echo "make clean       remove build/ (runs/ stays)"
+
+# The tests' packages too: one configured tree builds program and tests.
+packages:
+	@scripts/install_packages build run test
+
+build: packages
+	@TARGETS=hopscotch scripts/build release $(CMAKE_ARGS)
+
+# The state estimator is not there yet, so the demo says that it runs on the simulator's true state.
+run: build
+	@echo "run: $(SCENARIO) with --state truth (the state estimator is not part of this version)"
+	$(PROGRAM) run $(SCENARIO) --state truth $(ARGS)
+
+test: packages
+	@scripts/build release $(CMAKE_ARGS)
+	ctest --preset release --output-junit tests.xml
+
+install: build
+	cmake --install build/release --prefix $(PREFIX)
+
+bench: build
+	@for bench in $(BENCHES); do $(PROGRAM) bench $$bench || exit 1; done
+
+campaigns: build
+	@scripts/sweep $(ARGS)
+
+format:
+	@scripts/install_packages lint
+	@scripts/format
+
+lint: packages
+	@scripts/install_packages lint
+	@scripts/format --check
+	@TARGETS=check_includes scripts/build release $(CMAKE_ARGS)
+	@build/release/tests/lint/check_includes .
+	@scripts/tidy --changed HEAD
+
+check-deep: packages
+	@scripts/install_packages lint deep
+	@scripts/build asan
+	ctest --preset asan
+	@scripts/build tsan
+	ctest --preset tsan
+	@TARGETS="$(FUZZERS)" scripts/build fuzz
+	@for fuzzer in $(FUZZERS); do scripts/fuzz $$fuzzer $(FUZZ_SECONDS) || exit 1; done
+	@scripts/build release $(CMAKE_ARGS)
+	@scripts/tidy
+
+clean:
+	rm -rf build

@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "apps/bench.hpp"
+#include "apps/lockstep_run.hpp"
+#include "apps/stopwatch.hpp"
+#include "apps/text_file.hpp"
+#include "control/wrench_qp_record.hpp"
+#include "core/config_reader.hpp"
+
+namespace hopscotch::apps {
+
+namespace {
+
+/// Solve times of one recorded problem, the middle of three passes for the cold ones.
+struct RecordedTimes {
+  std::vector<double> cold_ms;
+  std::vector<double> warm_ms;
+  double objective_error = 0.0;
+  int failures = 0;
+};
+
+constexpr int kPasses = 3;
+
+double middle(std::array<double, kPasses> samples) {
+  std::sort(samples.begin(), samples.end());
+  return samples[kPasses / 2];
+}
+
+void solve_recorded(const control::WrenchQpRecord& record, control::QpSolver& cold_solver,
+                    control::QpSolver& warm_solver, RecordedTimes& times) {
+  std::array<double, kPasses> cold_ms{};
+  bool solved = true;
+  for (double& sample : cold_ms) {
+    const Stopwatch watch(TimeOf::thread);
+    solved = cold_solver.solve_cold(record.qp) == control::QpStatus::solved && solved;
+    sample = watch.milliseconds();
+  }
+  times.cold_ms.push_back(middle(cold_ms));
+  const Stopwatch watch(TimeOf::thread);
+  solved = warm_solver.solve_warm(record.qp, record.map) == control::QpStatus::solved && solved;
+  times.warm_ms.push_back(watch.milliseconds());
+  if (!solved) ++times.failures;
+  const double error = std::abs(cold_solver.objective() - record.objective) /
+                       (1.0 + std::abs(record.objective));
+  times.objective_error = std::max(times.objective_error, error);
+}
+
+nlohmann::ordered_json bench_recorded(const BenchSetup& setup, const std::filesystem::path& file) {
+  const std::string bytes = read_file(file);
+  const auto records = control::decode_wrench_qps(
+      std::as_bytes(std::span<const char>(bytes.data(), bytes.size())));
+  if (!records) throw core::ConfigError(file.string() + ": is no file of recorded QPs");
+  control::QpSolver cold_solver(setup.config.control.wrench_mpc.tolerances);
+  control::QpSolver warm_solver(setup.config.control.wrench_mpc.tolerances);
+  RecordedTimes times;
+  for (const control::WrenchQpRecord& record : *records) {
+    solve_recorded(record, cold_solver, warm_solver, times);
+  }
+  return {{"n", records->size()},
+          {"cold_us", percentile_group(times.cold_ms, 1e3)},
+          {"warm_us", percentile_group(times.warm_ms, 1e3)},
+          {"objective_error_max", times.objective_error},
+          {"failures", times.failures}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json bench_mpc(const BenchSetup& setup, const std::filesystem::path& qps) {
+  if (!qps.empty()) return bench_recorded(setup, qps);
+  LockstepRun run(level_ground_run(setup, Eyes::truth));
+  while (run.step({})) {
+  }
+  return {{"n", run.samples().mpc_ms.size()}, {"solve_us", percentile_group(run.samples().mpc_ms, 1e3)}};
+}
+
+nlohmann::ordered_json bench_tick(const BenchSetup& setup) {
+  LockstepRun run(level_ground_run(setup, Eyes::truth));
+  while (run.step({})) {
+  }
+  return {{"n", run.samples().tick_ms.size()}, {"tick_us", percentile_group(run.samples().tick_ms, 1e3)}};
+}
+
+}  // namespace hopscotch::apps

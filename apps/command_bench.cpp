@@ -1,0 +1,90 @@
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/bench.hpp"
+#include "apps/commands.hpp"
+#include "apps/installation.hpp"
+
+namespace hopscotch::apps {
+
+namespace {
+
+struct BenchOptions {
+  std::string what;
+  std::filesystem::path qps;
+  bool json = false;
+};
+
+/// The processor's own name and the instruction set that this build uses.
+std::string machine() {
+  std::ifstream info("/proc/cpuinfo");
+  std::string name = "unknown processor";
+  for (std::string line; std::getline(info, line);) {
+    if (line.rfind("model name", 0) == 0) {
+      name = line.substr(line.find(':') + 2);
+      break;
+    }
+  }
+#if defined(__AVX512F__)
+  return name + ", AVX-512";
+#elif defined(__AVX2__)
+  return name + ", AVX2";
+#else
+  return name + ", baseline instruction set";
+#endif
+}
+
+nlohmann::ordered_json measure(const BenchOptions& options) {
+  const BenchSetup setup{ProgramConfig::load(config_directory() / "hopscotch.yaml"),
+                         model::RobotParameters::load(robot_file("hector"))};
+  if (options.what == "planner") return bench_planner(setup);
+  if (options.what == "mpc") return bench_mpc(setup, options.qps);
+  if (options.what == "perception") return bench_perception(setup);
+  if (options.what == "tick") return bench_tick(setup);
+  return bench_sim(setup);
+}
+
+void print_people(const nlohmann::ordered_json& json) {
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_object() && value.contains("p50")) {
+      std::printf("%-22s p50 %-10.4g p99 %-10.4g max %.4g\n", key.c_str(), value["p50"].get<double>(),
+                  value["p99"].get<double>(), value["max"].get<double>());
+    } else {
+      std::printf("%-22s %s\n", key.c_str(),
+                  value.is_string() ? value.get<std::string>().c_str() : value.dump().c_str());
+    }
+  }
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("bench", "The figures that the README quotes, measured here");
+  command->footer("Example: hopscotch bench planner --json");
+  const auto options = std::make_shared<BenchOptions>();  // shared with the action below
+  command->add_option("WHAT", options->what, "planner, mpc, perception, sim or tick")
+      ->required()
+      ->check(CLI::IsMember({"planner", "mpc", "perception", "sim", "tick"}));
+  command->add_option("--qps", options->qps, "mpc: a file of recorded QPs");
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->callback([&action, options] {
+    action = [options] {
+      nlohmann::ordered_json json;
+      json["schema"] = "hopscotch.bench/1";
+      json["bench"] = options->what;
+      json["machine"] = machine();
+      json.update(measure(*options));
+      if (options->json) {
+        std::printf("%s\n", json.dump(2).c_str());
+      } else {
+        print_people(json);
+      }
+      return ExitStatus::ok;
+    };
+  });
+}
+
+}  // namespace hopscotch::apps

@@ -1,0 +1,28 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "apps/commands.hpp"
+#include "apps/report.hpp"
+#include "core/config_reader.hpp"
+
+namespace hopscotch::apps {
+
+void add_report_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("report", "(Re)writes report.html of a run folder");
+  command->footer("Example: hopscotch report runs/flat-leaps-1");
+  const auto folder = std::make_shared<std::filesystem::path>();  // shared with the action below
+  command->add_option("DIR", *folder, "Run folder")->required();
+  command->callback([&action, folder] {
+    action = [folder] {
+      if (!std::filesystem::is_regular_file(*folder / "result.json")) {
+        throw core::ConfigError(folder->string() + ": is no run folder: result.json is missing");
+      }
+      write_report(*folder);
+      std::printf("%s\n", (*folder / "report.html").c_str());
+      return ExitStatus::ok;
+    };
+  });
+}
+
+}  // namespace hopscotch::apps

@@ -1,0 +1,179 @@
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "apps/commands.hpp"
+#include "apps/installation.hpp"
+#include "apps/key_frames.hpp"
+#include "apps/lockstep_run.hpp"
+#include "apps/report.hpp"
+#include "apps/run_recorder.hpp"
+#include "apps/stopwatch.hpp"
+#include "apps/text_file.hpp"
+#include "apps/video.hpp"
+#include "apps/view.hpp"
+
+namespace hopscotch::apps {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct RunOptions {
+  fs::path scenario;
+  fs::path config = config_directory() / "hopscotch.yaml";
+  fs::path out;
+  std::uint64_t seed = 1;
+  int jumps = 0;
+  std::string perception = "camera";
+  std::string state = "estimate";
+  double pace = 0.0;
+  bool video = false;
+  bool view = false;
+  bool json = false;
+};
+
+std::atomic<bool> interrupted{false};  // set by the signal handler, hence at namespace scope
+
+extern "C" void on_interrupt(int) {
+  interrupted = true;
+}
+
+struct Prepared {
+  RunRequest request;
+  RunSources sources;
+};
+
+Prepared prepare(const RunOptions& options) {
+  Prepared prepared;
+  RunRequest& request = prepared.request;
+  request.scenario = sim::Scenario::load(options.scenario);
+  request.config = ProgramConfig::load(options.config);
+  request.robot = model::RobotParameters::load(robot_file(request.scenario.robot));
+  request.plant_robot = model::RobotParameters::load(robot_file(request.scenario.plant.robot));
+  request.seed = options.seed;
+  request.jumps_max = options.jumps;
+  request.eyes = options.perception == "truth" ? Eyes::truth : Eyes::camera;
+  prepared.sources = {read_file(options.scenario), read_file(options.config),
+                      read_file(robot_file(request.scenario.plant.robot))};
+  return prepared;
+}
+
+std::string hex(std::uint64_t id) {
+  std::array<char, 17> text{};
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(id));
+  return text.data();
+}
+
+/// Waits until simulated time is due on the wall clock.
+void keep_pace(double pace, core::Stamp now, const Stopwatch& watch) {
+  if (pace <= 0.0) return;
+  const double ahead_ms = 1e3 * now.seconds() / pace - watch.milliseconds();
+  if (ahead_ms > 1.0)
+    std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ahead_ms));
+}
+
+void say_jump(const JumpResult& jump, std::FILE* people) {
+  std::fprintf(people, "  jump %d: %.2f m ahead, %+.2f m -> %s, landed at %.3f m%s%s\n", jump.index,
+               jump.target.distance, jump.target.height,
+               std::string(jump_outcome_name(jump.outcome)).c_str(), jump.landing.distance,
+               jump.reason.empty() ? "" : ": ", jump.reason.c_str());
+}
+
+void say_result(const RunResult& result, const RunFolder& folder, std::FILE* people) {
+  for (const JumpResult& jump : result.jumps) say_jump(jump, people);
+  std::fprintf(people, "%s: %s after %.1f s and %zu jump%s%s%s (real-time factor %.1f)\n",
+               result.scenario.c_str(), std::string(run_outcome_name(result.outcome)).c_str(),
+               result.duration, result.jumps.size(), result.jumps.size() == 1 ? "" : "s",
+               result.reason.empty() ? "" : ", ", result.reason.c_str(),
+               result.timing.real_time_factor);
+  std::fprintf(people, "run folder: %s\nreport:     %s\n", folder.path.c_str(),
+               folder.report().c_str());
+}
+
+ExitStatus exit_status(RunOutcome outcome) {
+  const bool ok = outcome == RunOutcome::completed || outcome == RunOutcome::stopped;
+  return ok ? ExitStatus::ok : ExitStatus::answer_is_no;
+}
+
+ExitStatus run(const RunOptions& options) {
+  if (options.state == "estimate") {
+    std::fprintf(stderr,
+                 "hopscotch: the state estimator is not there yet: --state estimate cannot "
+                 "run. Pass --state truth to give the controller the true state.\n");
+    return ExitStatus::machine_lacks;
+  }
+  std::FILE* people = options.json ? stderr : stdout;
+  const Prepared prepared = prepare(options);
+  const std::uint64_t id = run_identity(prepared.sources, prepared.request);
+  const fs::path out =
+      options.out.empty()
+          ? fs::path("runs") / (prepared.request.scenario.name + "-" + std::to_string(options.seed))
+          : options.out;
+  std::optional<LiveView> view;
+  if (options.view) view.emplace(prepared.request);
+  std::fprintf(
+      people, "%s, seed %llu: perception %s, state %s (the controller is given the true state)\n",
+      prepared.request.scenario.name.c_str(), static_cast<unsigned long long>(options.seed),
+      options.perception.c_str(), options.state.c_str());
+
+  RunRecorder recorder(out, id, prepared.request, prepared.sources);
+  LockstepRun simulation(prepared.request);
+  std::signal(SIGINT, on_interrupt);
+  const double pace = options.pace > 0.0 ? options.pace : (options.view ? 1.0 : 0.0);
+  const Stopwatch watch;
+  const auto observe = [&](const TickRecord& tick) {
+    recorder.record(tick);
+    if (view) view->show(tick.truth.state);
+  };
+  while (simulation.step(observe)) {
+    keep_pace(pace, simulation.now(), watch);
+    if (interrupted || (view && view->closed())) simulation.stop();
+  }
+  RunResult result = simulation.result();
+  result.run_id = hex(id);
+  result.program = std::string(program_version());
+  result.timing.real_time_factor = 1e3 * result.duration / watch.milliseconds();
+  const RunFolder folder = recorder.finish(result);
+  draw_key_frames(folder);
+  write_report(folder.path);
+  if (options.video) write_video(folder);
+  say_result(result, folder, people);
+  if (options.json) std::printf("%s", read_file(folder.result()).c_str());
+  return exit_status(result.outcome);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("run", "Autonomous continuous jumping in the MuJoCo terrain simulation");
+  command->footer(
+      "Example: hopscotch run config/scenarios/rising-boxes.yaml --state truth --video");
+  const auto options = std::make_shared<RunOptions>();  // shared with the action below
+  command->add_option("SCENARIO", options->scenario, "Scenario file (YAML)")->required();
+  command->add_option("--seed", options->seed, "Of noise and start variation")
+      ->capture_default_str();
+  command->add_option("--jumps", options->jumps, "Stop after so many jumps")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--perception", options->perception, "What the robot sees the terrain with")
+      ->check(CLI::IsMember({"camera", "truth"}))
+      ->capture_default_str();
+  command->add_option("--state", options->state, "What the robot knows its state by")
+      ->check(CLI::IsMember({"estimate", "truth"}))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Run folder [runs/<scenario>-<seed>]");
+  command->add_option("--config", options->config, "Tuning")->capture_default_str();
+  command->add_option("--pace", options->pace, "Times real time; without it as fast as it goes")
+      ->check(CLI::Range(0.01, 100.0));
+  command->add_flag("--video", options->video, "Write video.mp4");
+  command->add_flag("--view", options->view, "Show it in a window, in real time");
+  command->add_flag("--json", options->json, "Print result.json on standard output");
+  command->callback([&action, options] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace hopscotch::apps

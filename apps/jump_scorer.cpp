@@ -1,0 +1,92 @@
+#include "apps/jump_scorer.hpp"
+
+#include <cmath>
+
+#include "model/rigid_body.hpp"
+
+namespace hopscotch::apps {
+
+using core::RobotPhase;
+
+JumpScorer::JumpScorer(const model::RobotParameters& robot, const sim::Terrain& terrain)
+    : robot_(robot), terrain_(terrain) {}
+
+void JumpScorer::update(const sim::PlantTruth& truth, const core::ControlStatus& status,
+                        const core::JumpPlan& plan) {
+  if (status.phase == RobotPhase::takeoff && phase_ != RobotPhase::takeoff) {
+    judge(truth);
+    begin(truth, plan);
+  }
+  phase_ = status.phase;
+  if (open_) follow(truth);
+}
+
+void JumpScorer::begin(const sim::PlantTruth& truth, const core::JumpPlan& plan) {
+  takeoff_ = sim::takeoff_place(truth);
+  peaks_ = {};
+  liftoff_.reset();
+  touched_ = false;
+  open_ = true;
+  JumpResult jump;
+  jump.index = static_cast<int>(jumps_.size()) + 1;
+  jump.target = {plan.target.distance, plan.target.height, plan.target.source};
+  jump.plan.status = plan.status;
+  jump.plan.iterations = plan.iterations;
+  jump.plan.warm = plan.warm;
+  jump.plan.duration = plan.duration;
+  if (plan.certificate.count > 0) {
+    jump.plan.binding_name = plan.certificate.binding().name;
+    jump.plan.binding_margin = plan.certificate.binding().margin;
+  }
+  jumps_.push_back(jump);
+}
+
+void JumpScorer::follow(const sim::PlantTruth& truth) {
+  JumpResult& jump = jumps_.back();
+  peaks_.include(truth);
+  jump.peak = {peaks_.torque_ratio, peaks_.speed_ratio, peaks_.power_ratio, peaks_.normal_force};
+  const bool contact = truth.state.contact[0] || truth.state.contact[1];
+  const bool leaving = phase_ == RobotPhase::takeoff || phase_ == RobotPhase::flight;
+  if (!contact && !liftoff_ && leaving) {
+    liftoff_ = truth.state.stamp;
+    const Eigen::Vector3d v_WG = model::composite_body(robot_, truth.state).v_WG;
+    jump.takeoff.speed_x =
+        v_WG.x() * std::cos(takeoff_.heading) + v_WG.y() * std::sin(takeoff_.heading);
+    jump.takeoff.speed_z = v_WG.z();
+    jump.takeoff.estimate_error = 0.0;  // the controller runs on the true state
+  }
+  if (contact && liftoff_ && !touched_ && phase_ != RobotPhase::takeoff) {
+    touched_ = true;
+    jump.flight = truth.state.stamp.since(*liftoff_);
+  }
+}
+
+void JumpScorer::judge(const sim::PlantTruth& truth) {
+  if (!open_) return;
+  open_ = false;
+  JumpResult& jump = jumps_.back();
+  if (!touched_) {
+    jump.outcome = JumpOutcome::aborted;
+    return;
+  }
+  const sim::LandingVerdict verdict = sim::judge_landing(terrain_, robot_, takeoff_, truth);
+  jump.landing = {verdict.distance, verdict.height, verdict.toe_margin, verdict.heel_margin};
+  jump.outcome = verdict.over_edge ? JumpOutcome::missed : JumpOutcome::landed;
+  if (verdict.over_edge) {
+    jump.reason =
+        core::Refusal{core::Reason::over_edge, "a toe or heel stands over an edge"}.text();
+  }
+}
+
+void JumpScorer::fell(const core::Refusal& reason) {
+  if (!open_) return;
+  open_ = false;
+  jumps_.back().outcome = JumpOutcome::fell;
+  jumps_.back().reason = reason.text();
+}
+
+void JumpScorer::finish(const sim::PlantTruth& truth) {
+  judge(truth);
+}
+
+}  // namespace hopscotch::apps

@@ -1,0 +1,163 @@
+#include "apps/lockstep_run.hpp"
+
+#include <string>
+
+#include "core/config_reader.hpp"
+#include "model/stand_posture.hpp"
+#include "sim/judge.hpp"
+#include "sim/terrain_builder.hpp"
+
+namespace hopscotch::apps {
+
+using core::Reason;
+using core::RobotPhase;
+
+namespace {
+
+/// After a fault the robot is watched for so long before it is said whether it fell [s].
+constexpr double kWatchAfterFault = 1.5;
+
+sim::PlantOptions plant_options(const RunRequest& request) {
+  const std::optional<model::StandPose> pose =
+      model::stand_pose(request.robot, request.config.stand_posture);
+  if (!pose) throw core::ConfigError("stand_posture: " + request.robot.name + " cannot stand so");
+  return {.scenario = request.scenario,
+          .robot = request.plant_robot,
+          .posture = {.q = pose->q, .trunk_pitch = pose->trunk_pitch},
+          .variation = {},
+          .seed = request.seed};
+}
+
+Mission mission_of(const RunRequest& request) {
+  Mission mission;
+  if (request.scenario.goal.x) mission.goal_x = *request.scenario.goal.x;
+  if (request.scenario.goal.jumps) mission.jumps = *request.scenario.goal.jumps;
+  const bool shorter = mission.jumps == 0 || request.jumps_max < mission.jumps;
+  if (request.jumps_max > 0 && shorter) mission.jumps = request.jumps_max;
+  return mission;
+}
+
+Pipeline::TerrainOracle oracle_of(const RunRequest& request) {
+  if (request.eyes == Eyes::camera) return {};
+  return [seen = request.scenario.seen](const core::RobotState& state) {
+    return sim::seen_terrain_map(seen, state.p_WB.head<2>(), state.stamp);
+  };
+}
+
+std::optional<core::JumpPhase> jump_phase(RobotPhase phase) {
+  switch (phase) {
+    case RobotPhase::takeoff: return core::JumpPhase::takeoff;
+    case RobotPhase::flight: return core::JumpPhase::flight;
+    case RobotPhase::landing: return core::JumpPhase::landing;
+    case RobotPhase::stand:
+    case RobotPhase::damp: return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+Reason fall_reason(RobotPhase phase) {
+  switch (phase) {
+    case RobotPhase::takeoff: return Reason::fell_in_takeoff;
+    case RobotPhase::flight: return Reason::fell_in_flight;
+    case RobotPhase::landing: return Reason::fell_in_landing;
+    case RobotPhase::stand:
+    case RobotPhase::damp: return Reason::fell_standing;
+  }
+  return Reason::fell_standing;
+}
+
+}  // namespace
+
+LockstepRun::LockstepRun(const RunRequest& request)
+    : request_(request),
+      plant_(plant_options(request)),
+      camera_(request.scenario.camera, request.plant_robot, request.scenario.seen, request.seed),
+      pipeline_(request.config, request.robot, mission_of(request), oracle_of(request)),
+      scorer_(request.plant_robot, request.scenario.true_terrain()) {
+  result_.scenario = request.scenario.name;
+  result_.seed = request.seed;
+  result_.perception = request.eyes == Eyes::camera ? "camera" : "truth";
+  result_.state = "truth";
+  result_.position_error = 0.0;
+  result_.pitch_error = 0.0;
+}
+
+bool LockstepRun::step(const std::function<void(const TickRecord&)>& observe) {
+  if (ended_) return false;
+  const core::SensorReadings readings = plant_.exchange(command_);
+  const sim::PlantTruth truth = plant_.truth();
+  camera_.expose(truth.state);
+  command_ = pipeline_.tick(truth.state, camera_);
+  plant_.notify_phase(jump_phase(pipeline_.status().phase));
+  scorer_.update(truth, pipeline_.status(), pipeline_.plan());
+  collect_times();
+  if (observe) {
+    observe({readings, truth.state, command_, truth, pipeline_.status(), pipeline_.events(),
+             pipeline_.plan(), static_cast<int>(scorer_.jumps().size())});
+  }
+  judge(truth);
+  return !ended_;
+}
+
+void LockstepRun::collect_times() {
+  const PipelineEvents& events = pipeline_.events();
+  if (events.planning_ms) samples_.plan_ms.push_back(*events.planning_ms);
+  if (events.mpc_ms) samples_.mpc_ms.push_back(*events.mpc_ms);
+  if (events.perception_ms) samples_.perception_ms.push_back(*events.perception_ms);
+  samples_.tick_ms.push_back(events.tick_ms);
+}
+
+void LockstepRun::judge(const sim::PlantTruth& truth) {
+  const core::ControlStatus& status = pipeline_.status();
+  if (const std::optional<std::string> fall = sim::fall_of(truth)) {
+    const core::Refusal reason{fall_reason(pipeline_.last_active_phase()), *fall};
+    scorer_.fell(reason);
+    ++result_.falls;
+    end(RunOutcome::fell, reason, truth);
+  } else if (const std::optional<core::Refusal> fault = plant_.fault()) {
+    end(RunOutcome::fault, *fault, truth);
+  } else if (status.fault != Reason::none) {
+    if (!fault_since_) fault_since_ = truth.state.stamp;
+    if (truth.state.stamp.since(*fault_since_) > kWatchAfterFault) {
+      end(RunOutcome::fault, pipeline_.end_reason(), truth);
+    }
+  } else if (const std::optional<MissionEnd> mission_end = pipeline_.end()) {
+    const bool limited = request_.jumps_max > 0 &&
+                         static_cast<int>(scorer_.jumps().size()) >= request_.jumps_max &&
+                         request_.scenario.goal.jumps != request_.jumps_max;
+    if (*mission_end == MissionEnd::refused) {
+      end(RunOutcome::refused, pipeline_.end_reason(), truth);
+    } else if (limited) {
+      end(RunOutcome::stopped, {Reason::jump_count_reached, "as asked by --jumps"}, truth);
+    } else {
+      end(RunOutcome::completed, {}, truth);
+    }
+  } else if (now().seconds() > request_.config.runtime.time_limit) {
+    end(RunOutcome::stopped, {Reason::time_limit, "runtime.time_limit_s is over"}, truth);
+  }
+}
+
+void LockstepRun::stop() {
+  if (!ended_) end(RunOutcome::stopped, {Reason::stopped_by_user, ""}, plant_.truth());
+}
+
+void LockstepRun::end(RunOutcome outcome, const core::Refusal& reason,
+                      const sim::PlantTruth& truth) {
+  scorer_.finish(truth);
+  ended_ = true;
+  result_.outcome = outcome;
+  result_.reason = reason.text();
+  result_.duration = now().seconds();
+}
+
+RunResult LockstepRun::result() const {
+  RunResult result = result_;
+  result.jumps = scorer_.jumps();
+  result.timing.plan_ms = Percentiles::of(samples_.plan_ms);
+  result.timing.mpc_ms = Percentiles::of(samples_.mpc_ms);
+  result.timing.perception_ms = Percentiles::of(samples_.perception_ms);
+  result.timing.tick_ms = Percentiles::of(samples_.tick_ms);
+  return result;
+}
+
+}  // namespace hopscotch::apps

@@ -1,0 +1,197 @@
+#include "apps/pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "apps/stopwatch.hpp"
+#include "core/check.hpp"
+#include "model/kinematics.hpp"
+#include "model/stand_posture.hpp"
+#include "perception/one_step.hpp"
+
+namespace hopscotch::apps {
+
+using core::RobotPhase;
+
+Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& robot,
+                   const Mission& mission, TerrainOracle oracle)
+    : config_(config),
+      robot_(robot),
+      mission_(mission),
+      oracle_(std::move(oracle)),
+      mapper_(config.perception, robot),
+      selector_(config.footstep, robot),
+      planner_(config.planner, robot),
+      mpc_(config.control.wrench_mpc, robot) {
+  task_.goal_x = mission.goal_x;
+  task_.source = oracle_ ? core::TargetSource::truth : core::TargetSource::perception;
+  question_.reference.horizon = static_cast<std::size_t>(config.control.wrench_mpc.horizon);
+}
+
+// DepthFrame -> TerrainMap -> TargetChoice -> JumpPlan -> ContactWrenches -> JointCommand
+core::JointCommand Pipeline::tick(const core::RobotState& state, core::DepthSource& camera) {
+  events_ = {};
+  if (!control_) start(state);
+  history_.add(state);
+  look(state.stamp, camera);
+  decide(state);
+  const Stopwatch watch;
+  const core::JointCommand command = control_->tick(state);
+  events_.tick_ms = watch.milliseconds();
+  balance(state.stamp);
+  watch_mission(state);
+  return command;
+}
+
+void Pipeline::start(const core::RobotState& state) {
+  const std::optional<model::StandPose> pose = model::stand_pose(robot_, config_.stand_posture);
+  HOPSCOTCH_CHECK(pose.has_value());  // start-up refuses a posture that cannot be taken
+  control_.emplace(config_.control, robot_,
+                   control::make_stand_plan(robot_, state, pose->q, pose->trunk_pitch));
+  mapper_.anchor_support(state);
+  landed_ = state.stamp;
+  still_since_ = state.stamp;
+  last_mpc_ = state.stamp.after(-config_.runtime.mpc_period);
+}
+
+/// Depth frames that have arrived go into the map once perception's latency has passed.
+void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
+  while (std::optional<core::DepthFrame> frame = camera.poll(now)) {
+    frames_.push(std::move(*frame), now.after(config_.runtime.perception_latency));
+  }
+  while (const std::optional<core::DepthFrame> frame = frames_.pop(now)) {
+    const std::optional<core::RobotState> at_exposure = history_.at(frame->stamp);
+    if (!at_exposure) continue;  // older than the history: it cannot be placed
+    const Stopwatch watch;
+    const perception::MapStatus status = mapper_.integrate(*frame, *at_exposure);
+    events_.perception_ms = watch.milliseconds();
+    if (status == perception::MapStatus::fused && frame->stamp > landed_) ++frames_since_landing_;
+  }
+}
+
+/// Where to, and how: the next jump is chosen and planned while the present one lands.
+void Pipeline::decide(const core::RobotState& state) {
+  if (std::optional<core::Result<core::JumpPlan>> plan = plans_.pop(state.stamp)) {
+    receive_plan(*plan);
+  }
+  if (may_decide(state)) choose_and_plan(state);
+}
+
+/// The MPC answers once its latency has passed; a touchdown or a take-off asks at once.
+void Pipeline::balance(core::Stamp now) {
+  while (const std::optional<control::MpcAnswer> answer = answers_.pop(now)) {
+    control_->answer(*answer);
+  }
+  const bool due = now.since(last_mpc_) >= config_.runtime.mpc_period - 1e-9;
+  if (!control_->wants_wrenches() || !(due || control_->phase_changed())) return;
+  last_mpc_ = now;
+  control_->question(question_);
+  control::MpcAnswer answer{.stamp = now, .form = question_.form};
+  const Stopwatch watch;
+  answer.status = mpc_.solve(question_.state, question_.reference, question_.form, answer.wrenches);
+  events_.mpc_ms = watch.milliseconds();
+  answer.planned = question_.reference.knots[0].wrenches;
+  answers_.push(answer, now.after(config_.runtime.mpc_latency));
+}
+
+bool Pipeline::may_decide(const core::RobotState& state) const {
+  if (end_ || control_->has_next() || !plans_.empty()) return false;
+  const RobotPhase phase = control_->phase();
+  if (phase != RobotPhase::stand && phase != RobotPhase::landing) return false;
+  const bool looked = oracle_ || frames_since_landing_ >= config_.runtime.look_frames;
+  return looked && state.stamp.since(landed_) >= config_.runtime.look_time &&
+         !mission_accomplished(state);
+}
+
+void Pipeline::choose_and_plan(const core::RobotState& state) {
+  const core::RobotState rest = control_->rest_state();
+  const core::TerrainMap oracle_map = oracle_ ? oracle_(state) : core::TerrainMap{};
+  const core::TerrainMap& map = oracle_ ? oracle_map : mapper_.map();
+  const perception::OneStepConfig& one_step = config_.perception.one_step;
+  const perception::StancePose stance = perception::stance_pose(one_step, robot_, rest);
+  events_.terrain = perception::one_step_terrain(one_step, map, stance);
+  events_.choice = selector_.choose({map, *events_.terrain}, rest, task_);
+  if (!events_.choice->target) {
+    refuse(state.stamp, events_.choice->refusal);
+    return;
+  }
+  refused_since_.reset();
+  if (!task_.target) choice_ = *events_.choice;
+  choice_.target = events_.choice->target;
+  const Stopwatch watch;
+  core::Result<core::JumpPlan> plan = planner_.plan({.start = rest,
+                                                     .target = *choice_.target,
+                                                     .final_posture = config_.stand_posture,
+                                                     .id = ++plans_made_});
+  events_.planning_ms = watch.milliseconds();
+  events_.plan = plan;
+  plans_.push(std::move(plan), state.stamp.after(config_.runtime.planning_latency));
+}
+
+/// A target that cannot be planned makes way for the next best one that is not about the same.
+void Pipeline::receive_plan(const core::Result<core::JumpPlan>& plan) {
+  task_.target.reset();
+  if (plan) {
+    failed_distances_.clear();
+    control_->offer(*plan);
+    return;
+  }
+  constexpr double kSamePlace = 0.04;  // [m]
+  failed_distances_.push_back(choice_.target->distance);
+  for (std::size_t i = 0; i < choice_.ranked_count; ++i) {
+    const double distance = choice_.ranked[i].distance;
+    const bool tried = std::any_of(failed_distances_.begin(), failed_distances_.end(),
+                                   [&](double d) { return std::abs(d - distance) < kSamePlace; });
+    if (!tried) {
+      task_.target = core::TargetOverride{.distance = distance};
+      return;
+    }
+  }
+  end_ = MissionEnd::refused;
+  end_reason_ = plan.error();
+}
+
+/// No target now may be one a few frames later.
+void Pipeline::refuse(core::Stamp now, const core::Refusal& refusal) {
+  task_.target.reset();
+  if (!refused_since_) refused_since_ = now;
+  if (now.since(*refused_since_) < config_.runtime.patience) return;
+  end_ = MissionEnd::refused;
+  end_reason_ = refusal;
+}
+
+/// Both heels beyond the goal, or all jumps made.
+bool Pipeline::mission_accomplished(const core::RobotState& state) const {
+  if (mission_.jumps > 0 && jumps_done_ >= mission_.jumps) return true;
+  if (std::isnan(mission_.goal_x)) return false;
+  const auto soles = model::sole_poses(robot_, state);
+  return std::all_of(soles.begin(), soles.end(), [&](const Eigen::Isometry3d& X_WF) {
+    return model::sole_tips(robot_, X_WF).heel.x() > mission_.goal_x;
+  });
+}
+
+/// Counts landings and notices when nothing is left to do.
+void Pipeline::watch_mission(const core::RobotState& state) {
+  const core::ControlStatus& status = control_->status();
+  if (control_->phase_changed() && status.phase == RobotPhase::landing) {
+    landed_ = state.stamp;
+    frames_since_landing_ = 0;
+    ++jumps_done_;
+  }
+  const bool still =
+      status.phase == RobotPhase::stand && state.v_WB.norm() < config_.runtime.settle_speed;
+  if (!still) still_since_ = state.stamp;
+  if (status.phase != RobotPhase::damp) last_phase_ = status.phase;
+  if (end_) return;
+  if (status.fault != core::Reason::none) {
+    end_ = MissionEnd::fault;
+    end_reason_ = {status.fault,
+                   "the controller gave up in " + std::string(core::robot_phase_name(last_phase_))};
+  } else if (mission_accomplished(state) &&
+             state.stamp.since(still_since_) >= config_.runtime.settle_time) {
+    end_ = MissionEnd::reached;
+  }
+}
+
+}  // namespace hopscotch::apps

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "apps/delayed.hpp"
+#include "apps/program_config.hpp"
+#include "apps/state_history.hpp"
+#include "control/control_tick.hpp"
+#include "control/wrench_mpc.hpp"
+#include "core/depth_source.hpp"
+#include "core/joint_command.hpp"
+#include "core/jump_plan.hpp"
+#include "core/landing_target.hpp"
+#include "core/one_step_terrain.hpp"
+#include "core/result.hpp"
+#include "core/robot_state.hpp"
+#include "footstep/landing_selector.hpp"
+#include "model/robot_parameters.hpp"
+#include "perception/terrain_mapper.hpp"
+#include "planner/jump_planner.hpp"
+
+namespace hopscotch::apps {
+
+/// What the robot is to achieve; it stops by itself when either is reached.
+struct Mission {
+  double goal_x = core::kNaN;  ///< Both heels beyond, along x of W [m]; NaN: no such goal.
+  int jumps = 0;               ///< So many jumps; 0: no limit.
+};
+
+/// Why the robot jumps no more.
+enum class MissionEnd : std::uint8_t { reached, refused, fault };
+
+/// What the stages produced in one tick, for logs; empty where nothing was due.
+struct PipelineEvents {
+  std::optional<core::OneStepTerrain> terrain;
+  std::optional<core::TargetChoice> choice;
+  std::optional<core::Result<core::JumpPlan>> plan;
+  std::optional<double> perception_ms;  ///< Wall time of the stage in this tick.
+  std::optional<double> planning_ms;
+  std::optional<double> mpc_ms;
+  double tick_ms = 0.0;
+};
+
+/// The whole robot brain, stage after stage, in lock-step: a stage runs when its input is there,
+/// and its result counts from its declared latency on.
+class Pipeline {
+ public:
+  /// Gives the terrain without looking, for `--perception truth`.
+  using TerrainOracle = std::function<core::TerrainMap(const core::RobotState&)>;
+
+  /// @param oracle Empty: the depth camera is all there is.
+  Pipeline(const ProgramConfig& config, const model::RobotParameters& robot, const Mission& mission,
+           TerrainOracle oracle);
+
+  /// One millisecond: state and camera in, joint commands out.
+  core::JointCommand tick(const core::RobotState& state, core::DepthSource& camera);
+
+  /// Set once the robot stands and will not jump again.
+  [[nodiscard]] std::optional<MissionEnd> end() const { return end_; }
+  [[nodiscard]] const core::Refusal& end_reason() const { return end_reason_; }
+  /// @pre tick() has run.
+  [[nodiscard]] const core::ControlStatus& status() const { return control_->status(); }
+  [[nodiscard]] const core::JumpPlan& plan() const { return control_->plan(); }
+  /// The last phase before a fault, the present one without.
+  [[nodiscard]] core::RobotPhase last_active_phase() const { return last_phase_; }
+  [[nodiscard]] const PipelineEvents& events() const { return events_; }
+
+ private:
+  void look(core::Stamp now, core::DepthSource& camera);
+  void decide(const core::RobotState& state);
+  void balance(core::Stamp now);
+  void start(const core::RobotState& state);
+  void receive_plan(const core::Result<core::JumpPlan>& plan);
+  void watch_mission(const core::RobotState& state);
+  void choose_and_plan(const core::RobotState& state);
+  [[nodiscard]] bool may_decide(const core::RobotState& state) const;
+  [[nodiscard]] bool mission_accomplished(const core::RobotState& state) const;
+  void refuse(core::Stamp now, const core::Refusal& refusal);
+
+  ProgramConfig config_;
+  model::RobotParameters robot_;
+  Mission mission_;
+  TerrainOracle oracle_;
+
+  StateHistory history_;
+  perception::TerrainMapper mapper_;
+  footstep::LandingSelector selector_;
+  planner::JumpPlanner planner_;
+  control::WrenchMpc mpc_;
+  std::optional<control::ControlTick> control_;  // starts with the first state
+
+  Delayed<core::DepthFrame> frames_;
+  Delayed<core::Result<core::JumpPlan>> plans_;
+  Delayed<control::MpcAnswer> answers_;
+  control::MpcQuestion question_;
+
+  core::Stamp last_mpc_;
+  core::Stamp landed_;       ///< Of the last touchdown, or of the start.
+  core::Stamp still_since_;  ///< Standing still since then.
+  std::optional<core::Stamp> refused_since_;
+  footstep::LandingTask task_;
+  core::TargetChoice choice_;  ///< The target being planned, with the ranked places it was among.
+  std::vector<double> failed_distances_;  ///< Of places that could not be planned from here [m].
+  core::RobotPhase last_phase_ = core::RobotPhase::stand;
+  int frames_since_landing_ = 0;
+  int jumps_done_ = 0;
+  std::uint64_t plans_made_ = 0;
+  std::optional<MissionEnd> end_;
+  core::Refusal end_reason_;
+  PipelineEvents events_;
+};
+
+}  // namespace hopscotch::apps

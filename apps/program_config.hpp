@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+
+#include "control/control_config.hpp"
+#include "core/config_reader.hpp"
+#include "footstep/footstep_config.hpp"
+#include "model/stand_posture.hpp"
+#include "perception/perception_config.hpp"
+#include "planner/planner_config.hpp"
+
+namespace hopscotch::apps {
+
+/// Rates and declared latencies: section `runtime`. A result can be used that long after its input.
+struct RuntimeConfig {
+  double perception_latency = 0.0;  ///< Depth frame delivered to map updated [s].
+  double planning_latency = 0.0;    ///< Target and state to plan [s].
+  double mpc_latency = 0.0;         ///< State to wrenches [s].
+  double mpc_period = 0.0;          ///< [s]
+  double look_time = 0.0;           ///< After touchdown, before the next target is chosen [s].
+  int look_frames = 0;              ///< Depth frames that must have come in since then.
+  double patience = 0.0;            ///< Looking without a safe target before giving up [s].
+  double settle_time = 0.0;         ///< Standing still for so long counts as rest [s].
+  double settle_speed = 0.0;        ///< Trunk slower than this is still [m/s].
+  double time_limit = 0.0;          ///< Of a run, simulated [s].
+
+  static RuntimeConfig load(const core::ConfigReader& section);
+};
+
+/// `config/hopscotch.yaml`, whole.
+struct ProgramConfig {
+  RuntimeConfig runtime;
+  model::StandPosture stand_posture;
+  perception::PerceptionConfig perception;
+  footstep::FootstepConfig footstep;
+  planner::PlannerConfig planner;
+  control::ControlConfig control;
+
+  /// @throws core::ConfigError naming file, line, key, value and rule.
+  static ProgramConfig load(const std::filesystem::path& file);
+};
+
+}  // namespace hopscotch::apps

@@ -1,0 +1,40 @@
+#include "control/control_config.hpp"
+
+namespace hopscotch::control {
+
+using core::Range;
+
+JointGains JointGains::load(const core::ConfigReader& section) {
+  JointGains gains;
+  gains.kp = section.vector<core::kJointsPerLeg>("kp_Nm_rad", Range::closed(0.0, 500.0));
+  gains.kd = section.vector<core::kJointsPerLeg>("kd_Nms_rad", Range::closed(0.0, 5.0));
+  gains.compliant_scale = section.number("compliant_scale", Range::closed(0.0, 1.0));
+  section.finish();
+  return gains;
+}
+
+SupervisorConfig SupervisorConfig::load(const core::ConfigReader& section) {
+  SupervisorConfig config;
+  config.touchdown_from = section.number("touchdown_from", Range::closed(0.0, 1.0));
+  config.flight_overtime = section.number("flight_overtime_s", Range::closed(0.0, 1.0));
+  config.tilt_max = section.number("tilt_max_rad", Range::above(0.0, 1.57));
+  config.joint_overshoot = section.number("joint_overshoot_rad", Range::closed(0.0, 1.0));
+  config.joint_speed_max = section.number("joint_speed_max_rad_s", Range::positive());
+  section.finish();
+  return config;
+}
+
+ControlConfig ControlConfig::load(const core::ConfigReader& section, double mpc_delay) {
+  ControlConfig config;
+  config.mpc_delay = mpc_delay;
+  config.gains = JointGains::load(section.section("gains"));
+  config.supervisor = SupervisorConfig::load(section.section("supervisor"));
+  config.actuation_delay = 1e-3 * section.number("actuation_delay_ms", Range::closed(0.0, 20.0));
+  config.wrench_age_max = 1e-3 * section.number("wrench_age_max_ms", Range::closed(1.0, 200.0));
+  config.anchor_time = section.number("anchor_time_s", Range::closed(0.0, 1.0));
+  config.wrench_mpc = WrenchMpcConfig::load(section.section("wrench_mpc"));
+  section.finish();
+  return config;
+}
+
+}  // namespace hopscotch::control

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "control/wrench_mpc.hpp"
+#include "core/config_reader.hpp"
+#include "core/robot_layout.hpp"
+#include "model/robot_parameters.hpp"
+
+namespace hopscotch::control {
+
+/// Joint PD of eq. (15), one leg; both legs have the same.
+struct JointGains {
+  core::LegVector kp;            ///< [N·m/rad]
+  core::LegVector kd;            ///< [N·m·s/rad]
+  double compliant_scale = 0.0;  ///< Factor on both where the MPC bears the load (landing, stand).
+
+  static JointGains load(const core::ConfigReader& section);
+};
+
+/// When phases change and when the robot gives up; section `control.supervisor`.
+struct SupervisorConfig {
+  double touchdown_from = 0.0;   ///< Share of the planned flight before which contact is ignored.
+  double flight_overtime = 0.0;  ///< Flight longer than planned by this is a fault [s].
+  double tilt_max = 0.0;         ///< Trunk away from upright; beyond is a fault [rad].
+  double joint_overshoot = 0.0;  ///< Beyond a joint range; more is a fault [rad].
+  double joint_speed_max = 0.0;  ///< Any joint; more is a fault [rad/s].
+
+  static SupervisorConfig load(const core::ConfigReader& section);
+};
+
+/// Tuning of ControlTick: section `control` of the configuration.
+struct ControlConfig {
+  JointGains gains;
+  SupervisorConfig supervisor;
+  double actuation_delay = 0.0;  ///< From the command's tick to torque at the joint, as known [s].
+  double mpc_delay = 0.0;        ///< From the MPC's state to the tick that uses its answer [s].
+  double wrench_age_max = 0.0;   ///< An MPC answer older than this is not used [s].
+  double anchor_time = 0.0;  ///< After touchdown the landing follows the feet for this long [s].
+
+  WrenchMpcConfig wrench_mpc;
+
+  /// @param mpc_delay The runtime's declared latency of the MPC [s].
+  static ControlConfig load(const core::ConfigReader& section, double mpc_delay);
+};
+
+}  // namespace hopscotch::control

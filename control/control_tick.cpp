@@ -1,0 +1,256 @@
+#include "control/control_tick.hpp"
+
+#include <Eigen/Geometry>
+
+#include "control/torque_law.hpp"
+#include "model/kinematics.hpp"
+#include "model/rigid_body.hpp"
+
+namespace hopscotch::control {
+
+using core::RobotPhase;
+
+namespace {
+
+Eigen::Vector3d mid_sole(const std::array<Eigen::Isometry3d, core::kLegs>& X_WF) {
+  return 0.5 * (X_WF[0].translation() + X_WF[1].translation());
+}
+
+std::array<Eigen::Vector3d, core::kLegs> centres(
+    const std::array<Eigen::Isometry3d, core::kLegs>& X_WF) {
+  return {X_WF[0].translation(), X_WF[1].translation()};
+}
+
+/// Mid-point of the soles of a knot as planned.
+Eigen::Vector3d planned_mid_sole(const model::RobotParameters& robot, const core::JumpKnot& knot) {
+  core::RobotState state;
+  state.p_WB = knot.p_WB;
+  state.R_WB = model::rotation_from_rpy(knot.rpy);
+  state.q = knot.q;
+  return mid_sole(model::sole_poses(robot, state));
+}
+
+/// The state `delay` later if it goes on as it is [s].
+core::RobotState extrapolate(const core::RobotState& state, double delay) {
+  core::RobotState later = state;
+  later.stamp = state.stamp.after(delay);
+  later.p_WB += delay * state.v_WB;
+  const Eigen::Vector3d turn = delay * state.w_WB;
+  const double angle = turn.norm();
+  if (angle > 0.0) later.R_WB = Eigen::AngleAxisd(angle, turn / angle) * state.R_WB;
+  later.q += delay * state.dq;
+  return later;
+}
+
+}  // namespace
+
+core::JumpPlan make_stand_plan(const model::RobotParameters& robot, const core::RobotState& state,
+                               const core::JointVector& stand_q, double pitch) {
+  const std::array<Eigen::Isometry3d, core::kLegs> soles = model::sole_poses(robot, state);
+  const Eigen::Vector3d forward = soles[0].linear().col(0) + soles[1].linear().col(0);
+  const double yaw = std::atan2(forward.y(), forward.x());
+  core::RobotState posed = state;
+  posed.p_WB.setZero();
+  posed.v_WB.setZero();
+  posed.w_WB.setZero();
+  posed.R_WB = model::rotation_from_rpy({0.0, pitch, yaw});
+  posed.q = stand_q;
+  posed.dq.setZero();
+  posed.p_WB = mid_sole(soles) - mid_sole(model::sole_poses(robot, posed));
+
+  constexpr double kStep = 0.03;  // [s]; the MPC holds the last knot with this step length
+  core::JumpPlan plan;
+  plan.stamp = state.stamp;
+  plan.knot_count = 2;
+  plan.liftoff_time = 0.0;
+  plan.touchdown_time = 0.0;
+  plan.duration = kStep;
+  plan.status = core::PlanStatus::solved;
+  plan.target.X_WF = soles;
+  core::JumpKnot& knot = plan.knots[0];
+  knot.time = 0.0;
+  knot.dt = kStep;
+  knot.phase = core::JumpPhase::landing;
+  knot.contact = {true, true};
+  knot.p_WB = posed.p_WB;
+  knot.rpy = {0.0, pitch, yaw};
+  knot.v_WB.setZero();
+  knot.w_WB.setZero();
+  knot.p_WG = model::composite_body(robot, posed).p_WG;
+  knot.v_WG.setZero();
+  knot.q = stand_q;
+  knot.dq.setZero();
+  knot.tau.setZero();
+  plan.knots[1] = knot;
+  plan.knots[1].time = kStep;
+  plan.knots[1].dt = 0.0;
+  return plan;
+}
+
+ControlTick::ControlTick(const ControlConfig& config, const model::RobotParameters& robot,
+                         const core::JumpPlan& stand)
+    : config_(config), robot_(robot), supervisor_(config.supervisor, robot), plan_(stand) {
+  soles_.takeoff =
+      soles_.landing = {stand.target.X_WF[0].translation(), stand.target.X_WF[1].translation()};
+}
+
+double ControlTick::command_time(core::Stamp now) const noexcept {
+  return now.since(start_);
+}
+
+void ControlTick::offer(const core::JumpPlan& plan) noexcept {
+  next_ = plan;
+  has_next_ = true;
+}
+
+void ControlTick::begin_next(const core::RobotState& state) noexcept {
+  plan_ = next_;
+  has_next_ = false;
+  start_ = state.stamp;
+  const auto soles = model::sole_poses(robot_, state);
+  soles_.takeoff = centres(soles);
+  anchor_.takeoff = mid_sole(soles) - planned_mid_sole(robot_, plan_.knots[0]);
+  anchor_.landing = anchor_.takeoff;
+  for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
+    soles_.landing[leg] = plan_.target.X_WF[leg].translation() + anchor_.landing;
+  }
+  supervisor_.begin_jump();
+}
+
+void ControlTick::follow_feet(const core::RobotState& state) noexcept {
+  if (state.stamp.since(touchdown_) > config_.anchor_time) return;
+  const auto soles = model::sole_poses(robot_, state);
+  soles_.landing = centres(soles);
+  anchor_.landing = mid_sole(soles) - planned_mid_sole(robot_, plan_.knots[plan_.knot_count - 1]);
+}
+
+core::RobotState ControlTick::rest_state() const noexcept {
+  const core::JumpKnot& last = plan_.knots[plan_.knot_count - 1];
+  core::RobotState rest = state_;
+  rest.p_WB = last.p_WB + anchor_.landing;
+  rest.R_WB = model::rotation_from_rpy(last.rpy);
+  rest.v_WB.setZero();
+  rest.w_WB.setZero();
+  rest.q = last.q;
+  rest.dq.setZero();
+  rest.contact = {true, true};
+  return rest;
+}
+
+core::JointCommand ControlTick::tick(const core::RobotState& state) noexcept {
+  if (!started_) {
+    start_ = state.stamp;
+    touchdown_ = state.stamp;
+    started_ = true;
+  }
+  state_ = state;
+  const RobotPhase before = phase();
+  if (has_next_ && before == RobotPhase::stand) begin_next(state);
+  const double body_time = command_time(state.stamp) - config_.actuation_delay;
+  supervisor_.update(state, plan_, body_time);
+  phase_changed_ = phase() != before;
+  if (phase_changed_ && phase() == RobotPhase::landing) {
+    touchdown_ = state.stamp;
+    start_ = state.stamp.after(-(plan_.touchdown_time + config_.actuation_delay));
+  }
+  if (phase() == RobotPhase::landing || (phase() == RobotPhase::stand)) follow_feet(state);
+
+  core::JointCommand command;
+  command.stamp = state.stamp;
+  status_ = {.stamp = state.stamp,
+             .phase = phase(),
+             .plan_id = plan_.id,
+             .plan_time = command_time(state.stamp) - config_.actuation_delay,
+             .fault = supervisor_.fault(),
+             .wrenches = {}};
+  if (phase() == RobotPhase::damp) {
+    command.mode = core::DriveMode::damp;
+    command.kd << config_.gains.kd, config_.gains.kd;
+    return command;
+  }
+  command.mode = core::DriveMode::active;
+  set_joint_targets(state, command);
+  set_feed_forward(state, command);
+  return command;
+}
+
+void ControlTick::set_joint_targets(const core::RobotState& state,
+                                    core::JointCommand& command) const noexcept {
+  double time = command_time(state.stamp);
+  if (phase() == RobotPhase::flight) time = std::min(time, plan_.touchdown_time);
+  const core::JumpKnot planned = sample_plan(plan_, time);
+  const bool compliant = phase() == RobotPhase::landing || phase() == RobotPhase::stand;
+  const double scale = compliant ? config_.gains.compliant_scale : 1.0;
+  command.q = planned.q;
+  command.dq = planned.dq;
+  // The ground is late: wait in the touchdown posture instead of yielding to a ground that is not there.
+  if (phase() == RobotPhase::flight && time >= plan_.touchdown_time) command.dq.setZero();
+  command.kp << scale * config_.gains.kp, scale * config_.gains.kp;
+  command.kd << scale * config_.gains.kd, scale * config_.gains.kd;
+  if (phase() != RobotPhase::flight) return;
+  // In flight nothing can right the trunk, but the feet can still meet the ground as planned: the
+  // hips take up the trunk's deviation.
+  const core::JumpKnot now = sample_plan(plan_, time - config_.actuation_delay);
+  const Eigen::Vector3d rpy = model::rpy_from_rotation(state.R_WB);
+  for (const core::Leg leg : core::kAllLegs) {
+    command.q[core::joint_index(leg, core::Joint::hip_pitch)] -= rpy.y() - now.rpy.y();
+    command.q[core::joint_index(leg, core::Joint::hip_roll)] -= rpy.x() - now.rpy.x();
+  }
+}
+
+bool ControlTick::answer_is_fresh() const noexcept {
+  return answer_.status == MpcStatus::solved && answer_.stamp >= touchdown_ &&
+         state_.stamp.since(answer_.stamp) <= config_.wrench_age_max;
+}
+
+void ControlTick::set_feed_forward(const core::RobotState& state,
+                                   core::JointCommand& command) noexcept {
+  const double time = command_time(state.stamp);
+  const core::JumpKnot planned = sample_plan(plan_, time);
+  switch (phase()) {
+    case RobotPhase::takeoff: {
+      command.tau = planned.tau;
+      status_.wrenches = planned.wrenches;
+      if (!answer_is_fresh() || answer_.form != MpcForm::error_state) {
+        ++stale_ticks_;
+        return;
+      }
+      core::ContactWrenches deviation{};
+      for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
+        deviation[leg].force = answer_.wrenches[leg].force - answer_.planned[leg].force;
+        deviation[leg].moment = answer_.wrenches[leg].moment - answer_.planned[leg].moment;
+        status_.wrenches[leg].force += deviation[leg].force;
+        status_.wrenches[leg].moment += deviation[leg].moment;
+      }
+      command.tau += contact_torques(robot_, state, deviation);
+      return;
+    }
+    case RobotPhase::flight:
+      if (time <= plan_.touchdown_time) command.tau = planned.tau;
+      return;
+    case RobotPhase::landing:
+    case RobotPhase::stand:
+      command.tau = leg_weight_torques(robot_, state);
+      if (!answer_is_fresh()) {
+        ++stale_ticks_;
+        return;
+      }
+      status_.wrenches = answer_.wrenches;
+      command.tau += contact_torques(robot_, state, answer_.wrenches);
+      return;
+    case RobotPhase::damp:
+      return;
+  }
+}
+
+void ControlTick::question(MpcQuestion& out) const noexcept {
+  const double delay = config_.mpc_delay + config_.actuation_delay;
+  out.state = extrapolate(state_, delay);
+  out.form = phase() == RobotPhase::takeoff ? MpcForm::error_state : MpcForm::full;
+  out.reference.stamp = out.state.stamp;
+  // The body runs `actuation_delay` behind the commands; it will have moved on by `delay`.
+  fill_reference(plan_, command_time(state_.stamp) + config_.mpc_delay, anchor_, soles_,
+                 out.reference);
+}
+
+}  // namespace hopscotch::control

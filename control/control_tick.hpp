@@ -1,0 +1,108 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "control/control_config.hpp"
+#include "control/jump_supervisor.hpp"
+#include "control/plan_follower.hpp"
+#include "control/wrench_mpc.hpp"
+#include "core/control_reference.hpp"
+#include "core/control_status.hpp"
+#include "core/joint_command.hpp"
+#include "core/jump_plan.hpp"
+#include "core/robot_state.hpp"
+#include "model/robot_parameters.hpp"
+
+namespace hopscotch::control {
+
+/// What the MPC is asked at one moment: the state as it will be when the answer acts, and the
+/// window.
+struct MpcQuestion {
+  core::RobotState state;
+  core::ControlReference reference;
+  MpcForm form = MpcForm::full;
+};
+
+/// The MPC's answer on its way back to the tick.
+struct MpcAnswer {
+  core::Stamp stamp;  ///< Of the state that it was computed from.
+  MpcStatus status = MpcStatus::bad_input;
+  MpcForm form = MpcForm::full;
+  core::ContactWrenches planned{};   ///< Of the reference's first step.
+  core::ContactWrenches wrenches{};  ///< Chosen for the first step.
+};
+
+/// The 1 kHz loop body: phase machine, plan look-up, torque law. Follows one plan at a time;
+/// standing is the end of a plan, so that there is always one. A command takes `actuation_delay` to
+/// reach the joints: set-points are looked up where the body will be by then, feedback terms where
+/// it is.
+///
+/// Real-time: `tick`, `offer`, `question` and `answer` do not allocate, lock or throw.
+class ControlTick {
+ public:
+  ControlTick(const ControlConfig& config, const model::RobotParameters& robot,
+              const core::JumpPlan& stand);
+
+  /// One millisecond. Returns the set-points of the drives.
+  core::JointCommand tick(const core::RobotState& state) noexcept;
+
+  /// Hands over the next jump; it starts when the present one has landed, at once when standing.
+  void offer(const core::JumpPlan& plan) noexcept;
+
+  /// True in the phases in which the feet bear load: the MPC has something to choose.
+  [[nodiscard]] bool wants_wrenches() const {
+    return phase() != core::RobotPhase::flight && phase() != core::RobotPhase::damp;
+  }
+  /// True in the tick that began a phase: the last answer belongs to another one, solve at once.
+  [[nodiscard]] bool phase_changed() const { return phase_changed_; }
+  /// How the robot will stand when the present plan has ended: its last posture on the feet's present
+  /// places, at rest. The next jump is planned from here.
+  [[nodiscard]] core::RobotState rest_state() const noexcept;
+  /// Fills the question for the state of the last tick; `reference.horizon` is an input.
+  void question(MpcQuestion& out) const noexcept;
+  void answer(const MpcAnswer& answer) noexcept { answer_ = answer; }
+
+  [[nodiscard]] core::RobotPhase phase() const { return supervisor_.phase(); }
+  [[nodiscard]] bool has_next() const { return has_next_; }
+  [[nodiscard]] const core::JumpPlan& plan() const { return plan_; }
+  [[nodiscard]] const core::ControlStatus& status() const { return status_; }
+  /// Ticks in which a load-bearing phase had no fresh answer of the MPC.
+  [[nodiscard]] std::uint64_t stale_ticks() const { return stale_ticks_; }
+  void latch(core::Reason fault) noexcept { supervisor_.latch(fault); }
+
+ private:
+  [[nodiscard]] double command_time(core::Stamp now) const noexcept;
+  void begin_next(const core::RobotState& state) noexcept;
+  void follow_feet(const core::RobotState& state) noexcept;
+  void set_joint_targets(const core::RobotState& state, core::JointCommand& command) const noexcept;
+  void set_feed_forward(const core::RobotState& state, core::JointCommand& command) noexcept;
+  [[nodiscard]] bool answer_is_fresh() const noexcept;
+
+  ControlConfig config_;
+  model::RobotParameters robot_;
+  JumpSupervisor supervisor_;
+  core::JumpPlan plan_;
+  core::JumpPlan next_;
+  bool has_next_ = false;
+  core::Stamp start_;  ///< Of the plan's clock, as commands see it.
+  bool started_ = false;
+  bool phase_changed_ = false;
+  core::Stamp touchdown_;
+  PlanAnchor anchor_;
+  PlannedSoles soles_{};
+  core::RobotState state_;
+  MpcAnswer answer_;
+  core::ControlStatus status_;
+  std::uint64_t stale_ticks_ = 0;
+};
+
+/// The plan that holds a posture for good: two equal knots in landing, soles where they are now.
+/// @param stand_q Joint angles of the posture, legs symmetric [rad].
+/// @param pitch   Of the trunk, + nose down [rad].
+[[nodiscard]] core::JumpPlan make_stand_plan(const model::RobotParameters& robot,
+                                             const core::RobotState& state,
+                                             const core::JointVector& stand_q, double pitch);
+
+}  // namespace hopscotch::control

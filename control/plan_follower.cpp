@@ -1,0 +1,118 @@
+#include "control/plan_follower.hpp"
+
+#include <algorithm>
+
+namespace hopscotch::control {
+
+namespace {
+
+/// Steps shorter than this are merged with the next: the QP gains nothing from them and its
+/// linearisation loses conditioning.
+constexpr double kShortestStep = 0.002;  // [s]
+
+template <typename Vector>
+Vector hermite(const Vector& p0, const Vector& v0, const Vector& p1, const Vector& v1, double dt,
+               double s) {
+  const double s2 = s * s;
+  const double s3 = s2 * s;
+  return (2.0 * s3 - 3.0 * s2 + 1.0) * p0 + (s3 - 2.0 * s2 + s) * dt * v0 +
+         (3.0 * s2 - 2.0 * s3) * p1 + (s3 - s2) * dt * v1;
+}
+
+/// The step whose mid-point lies on the other side of `time` than that of step `i`, within its
+/// phase; `i` itself at the ends of the phase.
+std::size_t neighbour_step(const core::JumpPlan& plan, std::size_t i, double time) {
+  const core::JumpKnot& knot = plan.knots[i];
+  const bool later = time > knot.time + 0.5 * knot.dt;
+  if (!later && i == 0) return i;
+  const std::size_t j = later ? i + 1 : i - 1;
+  if (j + 1 >= plan.knot_count) return i;
+  return plan.knots[j].phase == knot.phase && plan.knots[j].dt > kShortestStep ? j : i;
+}
+
+void sample_efforts(const core::JumpPlan& plan, std::size_t i, double time, core::JumpKnot& out) {
+  const core::JumpKnot& a = plan.knots[i];
+  const std::size_t j = neighbour_step(plan, i, time);
+  const core::JumpKnot& b = plan.knots[j];
+  const double mid_a = a.time + 0.5 * a.dt;
+  const double mid_b = b.time + 0.5 * b.dt;
+  const double s = i == j ? 0.0 : std::clamp((time - mid_a) / (mid_b - mid_a), 0.0, 1.0);
+  out.tau = (1.0 - s) * a.tau + s * b.tau;
+  for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
+    out.wrenches[leg].force = (1.0 - s) * a.wrenches[leg].force + s * b.wrenches[leg].force;
+    out.wrenches[leg].moment = (1.0 - s) * a.wrenches[leg].moment + s * b.wrenches[leg].moment;
+  }
+}
+
+}  // namespace
+
+std::size_t knot_index(const core::JumpPlan& plan, double time) noexcept {
+  const auto first = plan.knots.begin();
+  const auto last = first + static_cast<std::ptrdiff_t>(plan.knot_count);
+  const auto after = std::upper_bound(
+      first, last, time, [](double t, const core::JumpKnot& knot) { return t < knot.time; });
+  return after == first ? 0 : static_cast<std::size_t>(after - first) - 1;
+}
+
+core::JumpKnot sample_plan(const core::JumpPlan& plan, double time) noexcept {
+  const double t = std::clamp(time, 0.0, plan.duration);
+  const std::size_t i = knot_index(plan, t);
+  const core::JumpKnot& a = plan.knots[i];
+  core::JumpKnot out = a;
+  if (i + 1 >= plan.knot_count || a.dt <= 0.0) return out;
+  const core::JumpKnot& b = plan.knots[i + 1];
+  const double s = std::clamp((t - a.time) / a.dt, 0.0, 1.0);
+  out.time = t;
+  out.dt = a.dt;
+  out.p_WB = hermite(a.p_WB, a.v_WB, b.p_WB, b.v_WB, a.dt, s);
+  out.p_WG = hermite(a.p_WG, a.v_WG, b.p_WG, b.v_WG, a.dt, s);
+  out.q = hermite(a.q, a.dq, b.q, b.dq, a.dt, s);
+  out.rpy = (1.0 - s) * a.rpy + s * b.rpy;
+  out.v_WB = (1.0 - s) * a.v_WB + s * b.v_WB;
+  out.w_WB = (1.0 - s) * a.w_WB + s * b.w_WB;
+  out.v_WG = (1.0 - s) * a.v_WG + s * b.v_WG;
+  out.dq = (1.0 - s) * a.dq + s * b.dq;
+  sample_efforts(plan, i, t, out);
+  return out;
+}
+
+namespace {
+
+/// The plan's step length at `time`, cut where the phase ends.
+double step_length(const core::JumpPlan& plan, double time) {
+  const std::size_t i = knot_index(plan, time);
+  double dt = plan.knots[i].dt;
+  if (i + 1 >= plan.knot_count || dt <= 0.0) dt = plan.knots[plan.knot_count - 2].dt;
+  for (const double boundary : {plan.liftoff_time, plan.touchdown_time}) {
+    if (time < boundary - kShortestStep && time + dt > boundary - kShortestStep) {
+      return boundary - time;
+    }
+  }
+  return dt;
+}
+
+}  // namespace
+
+void fill_reference(const core::JumpPlan& plan, double time, const PlanAnchor& anchor,
+                    const PlannedSoles& soles, core::ControlReference& reference) noexcept {
+  double t = std::max(time, 0.0);
+  for (std::size_t k = 0; k <= reference.horizon; ++k) {
+    const double dt = step_length(plan, t);
+    const core::JumpKnot state = sample_plan(plan, t);
+    const core::JumpKnot step = sample_plan(plan, t + 0.5 * dt);
+    const bool landed = t >= plan.touchdown_time - kShortestStep;
+    const Eigen::Vector3d& shift = landed ? anchor.landing : anchor.takeoff;
+    core::ReferenceKnot& knot = reference.knots[k];
+    knot.dt = dt;
+    knot.contact = step.contact;
+    knot.p_WG = state.p_WG + shift;
+    knot.rpy = state.rpy;
+    knot.v_WG = state.v_WG;
+    knot.w_WB = state.w_WB;
+    knot.p_WF = landed ? soles.landing : soles.takeoff;
+    knot.wrenches = step.wrenches;
+    t += dt;
+  }
+}
+
+}  // namespace hopscotch::control

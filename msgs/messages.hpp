@@ -1,0 +1,93 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/contact_wrenches.hpp"
+#include "core/control_status.hpp"
+#include "core/operator_command.hpp"
+#include "core/reason.hpp"
+#include "core/robot_layout.hpp"
+#include "core/robot_state.hpp"
+#include "core/time.hpp"
+
+/// What travels on the channels besides the values of `core`.
+namespace hopscotch::msgs {
+
+/// What every message carries besides its stamp.
+struct Tag {
+  std::uint64_t sequence = 0;  ///< Per channel and sender, from 1.
+  std::uint64_t run_id = 0;    ///< Of the sender.
+};
+
+/// HOP_TARGET_CMD: the operator's landing target; no target clears an earlier one.
+struct TargetCommand {
+  core::Stamp stamp;
+  std::optional<core::TargetOverride> target;
+};
+
+/// HOP_COMMAND_CMD: the operator's wish for a mode.
+struct ModeCommand {
+  core::Stamp stamp;
+  core::ModeRequest mode = core::ModeRequest::none;
+  double goal_x = core::kNaN;  ///< New goal along the initial heading [m]; NaN: no change.
+};
+
+/// HOP_ACK: the answer to either.
+struct Ack {
+  core::Stamp stamp;
+  std::string channel;                 ///< That the command came on.
+  std::uint64_t command_sequence = 0;  ///< Of the command.
+  bool accepted = false;
+  core::Refusal refusal;  ///< Set when not accepted.
+};
+
+/// Computing time of the stages whose work ended since the last status [ms]; NaN: none ended.
+struct StageTimes {
+  double tick_ms = core::kNaN;
+  double mpc_ms = core::kNaN;
+  double plan_ms = core::kNaN;
+  double perception_ms = core::kNaN;
+  double estimator_ms = core::kNaN;
+};
+
+/// HOP_STATUS: what the program is doing.
+struct Status {
+  core::ControlStatus control;  ///< Its stamp is that of the message.
+  int jump = 0;                 ///< From 1; 0 before the first.
+  int deadline_misses = 0;      ///< So far.
+  StageTimes times;
+};
+
+/// HOP_TRUTH, simulation only: what the plant really does. For reports and judging, never for
+/// control.
+struct Truth {
+  core::Stamp stamp;
+  core::RobotState state;
+  core::ContactWrenches ground{};  ///< Of the ground on each foot, at the sole centre, in W.
+  core::JointVector tau = core::JointVector::Constant(core::kNaN);  ///< Applied, joint side [N·m].
+};
+
+/// One thing to stand on, as drawn.
+struct SceneSlab {
+  /// Corners of the true top, counter-clockwise from near right, in W [m].
+  std::array<Eigen::Vector3d, 4> top{};
+  double seen_rise = 0.0;  ///< Top that perception is shown, above the true one [m].
+};
+
+/// HOP_SCENE, simulation only, once per log: the terrain of the scenario.
+struct Scene {
+  static constexpr std::size_t kMaxSlabs = 128;
+  core::Stamp stamp;
+  std::string robot;           ///< Name of the robot's file.
+  double goal_x = core::kNaN;  ///< [m]; NaN: none.
+  double pit_z = core::kNaN;   ///< Floor between the slabs [m].
+  std::array<SceneSlab, kMaxSlabs> slabs{};
+  std::size_t slab_count = 0;
+};
+
+}  // namespace hopscotch::msgs

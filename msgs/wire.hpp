@@ -1,0 +1,120 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <optional>
+#include <span>
+
+#include "core/check.hpp"
+#include "core/contact_wrenches.hpp"
+#include "core/time.hpp"
+#include "msgs/convert.hpp"
+#include "msgs/messages.hpp"
+
+/// Shared by the convert_*.cpp files; includes no generated code itself.
+namespace hopscotch::msgs::wire {
+
+/// Bytes of a generated message.
+template <typename Message>
+Bytes to_bytes(const Message& message) {
+  Bytes bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  const int written = message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  HOPSCOTCH_CHECK(written == static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+/// A generated message from bytes; nothing if they do not hold exactly one. Generated code throws
+/// on absurd string lengths, which is caught here.
+template <typename Message>
+std::optional<Message> from_bytes(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t kMostBytes = 1U << 24;  // far above any message, far below int overflow
+  if (bytes.size() > kMostBytes) return std::nullopt;
+  Message message;
+  try {
+    const int read = message.decode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    if (read != static_cast<int>(bytes.size())) return std::nullopt;
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  return message;
+}
+
+template <typename Message>
+void set_header(core::Stamp stamp, const Tag& tag, Message& message) {
+  message.stamp_ns = stamp.nanoseconds;
+  message.sequence = static_cast<std::int64_t>(tag.sequence);
+  message.run_id = static_cast<std::int64_t>(tag.run_id);
+}
+
+template <typename Message>
+core::Stamp stamp_of(const Message& message) {
+  return {message.stamp_ns};
+}
+
+template <typename Message>
+Tag tag_of(const Message& message) {
+  return {static_cast<std::uint64_t>(message.sequence), static_cast<std::uint64_t>(message.run_id)};
+}
+
+template <typename Vector, std::size_t N>
+void put(const Vector& from, double (&to)[N]) {
+  static_assert(Vector::SizeAtCompileTime == N && Vector::IsVectorAtCompileTime);
+  std::copy_n(from.data(), N, to);
+}
+template <typename Vector, std::size_t N>
+void get(const double (&from)[N], Vector& to) {
+  static_assert(Vector::SizeAtCompileTime == N && Vector::IsVectorAtCompileTime);
+  std::copy_n(from, N, to.data());
+}
+
+/// Matrices travel row by row.
+inline void put(const Eigen::Matrix3d& from, double (&to)[3][3]) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) to[row][column] = from(row, column);
+  }
+}
+inline void get(const double (&from)[3][3], Eigen::Matrix3d& to) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) to(row, column) = from[row][column];
+  }
+}
+
+/// For any message with members force[2][3] and moment[2][3].
+template <typename Message>
+void put_wrenches(const core::ContactWrenches& from, Message& to) {
+  for (std::size_t leg = 0; leg < from.size(); ++leg) {
+    put(from[leg].force, to.force[leg]);
+    put(from[leg].moment, to.moment[leg]);
+  }
+}
+template <typename Message>
+void get_wrenches(const Message& from, core::ContactWrenches& to) {
+  for (std::size_t leg = 0; leg < to.size(); ++leg) {
+    get(from.force[leg], to[leg].force);
+    get(from.moment[leg], to[leg].moment);
+  }
+}
+
+/// An enumerator from its number on the wire. @return false if above `last`.
+template <typename Enum>
+[[nodiscard]] bool get_enum(std::uint8_t number, Enum last, Enum& to) {
+  if (number > static_cast<std::uint8_t>(last)) return false;
+  to = static_cast<Enum>(number);
+  return true;
+}
+template <typename Enum>
+std::uint8_t number_of(Enum value) {
+  return static_cast<std::uint8_t>(value);
+}
+
+/// A count from the wire. @return false if negative or above `capacity`.
+[[nodiscard]] inline bool get_count(std::int32_t number, std::size_t capacity, std::size_t& to) {
+  if (number < 0 || static_cast<std::size_t>(number) > capacity) return false;
+  to = static_cast<std::size_t>(number);
+  return true;
+}
+
+}  // namespace hopscotch::msgs::wire

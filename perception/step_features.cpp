@@ -1,0 +1,178 @@
+#include "perception/step_features.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hopscotch::perception {
+
+namespace {
+
+using core::EdgeKind;
+
+/// A step is a change of height within so many slices: 4.5 cm, three cells of a blurred edge.
+constexpr std::size_t kStepSlices = 9;
+/// Heights at the ends of a tread are averaged over so many slices: 6 cm.
+constexpr std::size_t kEndSlices = 12;
+/// Shorter pieces of support are what is left of an edge.
+constexpr double kSplinter = 0.02;  // [m]
+
+struct Run {
+  std::size_t first = 0;
+  std::size_t last = 0;
+};
+
+bool bears(const Slice& slice) {
+  return slice.kind == SliceKind::level;
+}
+
+/// The slice within the last few up to `last` at which the height changes most.
+std::size_t sharpest_change(const std::vector<Slice>& slices, std::size_t first, std::size_t last) {
+  std::size_t best = last;
+  double largest = -1.0;
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    const double change = std::abs(slices[i].mean - slices[i - 1].mean);
+    if (change <= largest) continue;
+    largest = change;
+    best = i;
+  }
+  return best;
+}
+
+/// Runs of level slices, cut at steps.
+std::vector<Run> level_runs(const OneStepConfig& config, const std::vector<Slice>& slices) {
+  std::vector<Run> runs;
+  bool open = false;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    if (!bears(slices[i])) {
+      open = false;
+      continue;
+    }
+    if (!open) {
+      runs.push_back({i, i});
+      open = true;
+      continue;
+    }
+    Run& run = runs.back();
+    run.last = i;
+    const std::size_t back = std::max(run.first, i < kStepSlices ? 0 : i - kStepSlices);
+    if (std::abs(slices[i].mean - slices[back].mean) < config.step_min) continue;
+    const std::size_t cut = sharpest_change(slices, back, i);
+    run.last = cut - 1;
+    runs.push_back({cut, i});
+  }
+  return runs;
+}
+
+double mean_height(const std::vector<Slice>& slices, std::size_t first, std::size_t last) {
+  double sum = 0.0;
+  for (std::size_t i = first; i <= last; ++i) sum += slices[i].mean;
+  return sum / static_cast<double>(last - first + 1);
+}
+
+Tread tread_of(const std::vector<Slice>& slices, const Run& run) {
+  const std::size_t length = std::min(kEndSlices, run.last - run.first + 1);
+  return {.start = slices[run.first].x - 0.5 * kSliceStep,
+          .end = slices[run.last].x + 0.5 * kSliceStep,
+          .start_height = mean_height(slices, run.first, run.first + length - 1),
+          .end_height = mean_height(slices, run.last + 1 - length, run.last)};
+}
+
+bool contains_blind(const std::vector<Slice>& slices, const Tread& before, const Tread& behind) {
+  return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
+    return slice.x > before.end && slice.x < behind.start && slice.kind == SliceKind::blind;
+  });
+}
+
+/// Joins treads of one level across holes that are no gap and across the blind strip.
+std::vector<Tread> joined(const OneStepConfig& config, const std::vector<Slice>& slices,
+                          const std::vector<Tread>& treads) {
+  std::vector<Tread> result;
+  for (const Tread& tread : treads) {
+    if (!result.empty()) {
+      Tread& before = result.back();
+      const bool short_hole =
+          tread.start - before.end < config.gap_min || contains_blind(slices, before, tread);
+      if (short_hole && std::abs(tread.start_height - before.end_height) < config.step_min) {
+        before.end = tread.end;
+        before.end_height = tread.end_height;
+        continue;
+      }
+    }
+    result.push_back(tread);
+  }
+  return result;
+}
+
+/// Whether tread `i` lies too low to be support: a pit, or a slot that no foot fits in.
+bool is_hole(const OneStepConfig& config, const std::vector<Tread>& treads, std::size_t i,
+             double height_before) {
+  const Tread& tread = treads[i];
+  if (tread.start_height < height_before - config.pit_depth) return true;
+  if (i + 1 >= treads.size()) return false;
+  const double lower_side = std::min(height_before, treads[i + 1].start_height);
+  return tread.end - tread.start < config.foothold_length &&
+         tread.end_height < lower_side - config.step_min;
+}
+
+void add_edge(core::OneStepTerrain& terrain, const core::TerrainEdge& edge) {
+  if (terrain.edge_count < terrain.edges.size()) terrain.edges[terrain.edge_count++] = edge;
+}
+
+void add_gap(core::OneStepTerrain& terrain, const core::TerrainGap& gap) {
+  if (terrain.gap_count < terrain.gaps.size()) terrain.gaps[terrain.gap_count++] = gap;
+}
+
+void list_between(const OneStepConfig& config, const Tread& before, const Tread& behind,
+                  core::OneStepTerrain& terrain) {
+  const double sigma = config.edge_sigma;
+  const double step = behind.start_height - before.end_height;
+  if (behind.start - before.end >= config.gap_min) {
+    add_edge(terrain, {before.end, sigma, step, EdgeKind::gap_near});
+    add_edge(terrain, {behind.start, sigma, step, EdgeKind::gap_far});
+    add_gap(terrain, {before.end, behind.start, std::sqrt(2.0) * sigma});
+  } else if (step >= config.step_min) {
+    add_edge(terrain, {0.5 * (before.end + behind.start), sigma, step, EdgeKind::up});
+  } else if (step <= -config.step_min) {
+    add_edge(terrain, {before.end, sigma, step, EdgeKind::down});
+  }
+}
+
+/// Length behind `x` that was looked at and found to bear nothing [m].
+double bare_length(const std::vector<Slice>& slices, double x) {
+  double bare = 0.0;
+  for (const Slice& slice : slices) {
+    if (slice.x > x && slice.kind != SliceKind::unseen) bare += kSliceStep;
+  }
+  return bare;
+}
+
+}  // namespace
+
+std::vector<Tread> find_treads(const OneStepConfig& config, const std::vector<Slice>& slices) {
+  std::vector<Tread> pieces;
+  for (const Run& run : level_runs(config, slices)) pieces.push_back(tread_of(slices, run));
+  std::erase_if(pieces, [](const Tread& tread) { return tread.end - tread.start < kSplinter; });
+  const std::vector<Tread> all = joined(config, slices, pieces);
+  std::vector<Tread> kept;
+  double height_before = 0.0;  // of S, where the robot stands
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (is_hole(config, all, i, height_before)) continue;
+    kept.push_back(all[i]);
+    height_before = all[i].end_height;
+  }
+  return joined(config, slices, kept);
+}
+
+void list_features(const OneStepConfig& config, const std::vector<Slice>& slices,
+                   const std::vector<Tread>& treads, core::OneStepTerrain& terrain) {
+  for (std::size_t i = 0; i + 1 < treads.size(); ++i) {
+    list_between(config, treads[i], treads[i + 1], terrain);
+  }
+  if (treads.empty()) return;
+  const double end = treads.back().end;
+  if (bare_length(slices, end) >= config.gap_min) {
+    add_edge(terrain, {end, config.edge_sigma, core::kNaN, EdgeKind::gap_near});
+  }
+}
+
+}  // namespace hopscotch::perception

@@ -1,0 +1,222 @@
+#include "perception/terrain_mapper.hpp"
+
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "model/kinematics.hpp"
+#include "perception/body_mask.hpp"
+#include "perception/cell_height.hpp"
+#include "perception/depth_filter.hpp"
+#include "perception/depth_noise.hpp"
+#include "perception/map_window.hpp"
+#include "perception/point_bins.hpp"
+#include "perception/sight_lines.hpp"
+
+namespace hopscotch::perception {
+
+struct TerrainMapper::Memory {
+  Memory(const PerceptionConfig& config, const Eigen::Vector2d& centre)
+      : filter(config.filter, config.noise), window(empty_window(config.mapper, centre)) {}
+
+  DepthFilter filter;
+  MapWindow window;
+  PointBins bins;
+  std::vector<float> depth;
+  std::vector<CellUnderRay> under_ray;
+};
+
+namespace {
+
+/// Jumps on the ground beyond so many cells hide cells that no pixel can reach.
+constexpr double kHiddenCells = 2.0;
+/// Cells nearer to the camera's height than this are seen edge-on and say nothing about height.
+constexpr double kLevelSight = 0.05;  // [m]
+
+bool is_pose_finite(const core::RobotState& state) {
+  return state.p_WB.allFinite() && state.R_WB.allFinite() && state.q.allFinite();
+}
+
+bool is_sound(const core::DepthFrame& frame) {
+  const core::CameraIntrinsics& camera = frame.intrinsics;
+  const bool sized = camera.width > 0 && camera.height > 0 &&
+                     frame.depth.size() == static_cast<std::size_t>(camera.width) *
+                                               static_cast<std::size_t>(camera.height);
+  const bool lens = std::isfinite(camera.fx) && camera.fx > 0.0 && std::isfinite(camera.fy) &&
+                    camera.fy > 0.0 && std::isfinite(camera.cx) && std::isfinite(camera.cy);
+  return sized && lens && frame.X_BC.matrix().allFinite();
+}
+
+Eigen::Isometry3d pose_of_trunk(const core::RobotState& state) {
+  Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();
+  X_WB.linear() = state.R_WB;
+  X_WB.translation() = state.p_WB;
+  return X_WB;
+}
+
+/// Heading of the trunk on the ground; x of W when it points straight up or down.
+Eigen::Vector2d heading_of(const core::RobotState& state) {
+  const Eigen::Vector2d ahead = state.R_WB.col(0).head<2>();
+  const double length = ahead.norm();
+  return length > 1e-6 ? Eigen::Vector2d(ahead / length) : Eigen::Vector2d(1.0, 0.0);
+}
+
+Eigen::Vector2d window_centre(const MapperConfig& config, const core::RobotState& state) {
+  return state.p_WB.head<2>() + config.window_ahead * heading_of(state);
+}
+
+Eigen::Vector3d cell_centre(const core::TerrainMap& map, std::size_t cell, float height) {
+  const std::size_t size_x = static_cast<std::size_t>(map.size_x);
+  return {map.origin_x + (static_cast<double>(cell % size_x) + 0.5) * map.resolution,
+          map.origin_y + (static_cast<double>(cell / size_x) + 0.5) * map.resolution,
+          static_cast<double>(height)};
+}
+
+ViewOfCell view_of(const Eigen::Vector3d& p_WP, const Eigen::Isometry3d& X_WC) {
+  const Eigen::Vector3d p_CP_W = p_WP - X_WC.translation();
+  return {.depth = X_WC.linear().col(2).dot(p_CP_W),
+          .horizontal = p_CP_W.head<2>().norm(),
+          .rise = p_CP_W.z()};
+}
+
+/// Pixels that a level surface all over a cell would get: the solid angle of the cell over that of
+/// a pixel, less the pixels that are not used.
+double expected_points(const MapperConfig& config, const PlacedDepth& image,
+                       const Eigen::Vector3d& p_WP, const ViewOfCell& view) {
+  const core::CameraIntrinsics& camera = image.intrinsics;
+  const double area = config.resolution * config.resolution;
+  const double pixels =
+      camera.fx * camera.fy * area * std::abs(view.rise) / (view.depth * view.depth * view.depth);
+  const double down = image.X_WC.linear().col(1).dot(p_WP - image.X_WC.translation());
+  const double row = camera.cy + camera.fy * down / view.depth;
+  const int row_step = is_lower_half(camera, row) ? config.near_row_step : 1;
+  return pixels / (config.column_step * row_step);
+}
+
+/// Takes one reading into its cell.
+void fuse_reading(const PerceptionConfig& config, const ViewOfCell& view,
+                  const CellReading& reading, std::size_t index, MapWindow& window) {
+  core::TerrainCell& cell = window.map.cells[index];
+  CellMemory& memory = window.memory[index];
+  const bool ends_here = reading.has_riser || memory.edge_frame == window.map.frames;
+  if (reading.kind == CellReadingKind::off_centre && ends_here) {
+    fuse_edge(reading.height, cell, memory);
+    return;
+  }
+  const HeightMeasurement measurement{
+      .height = reading.height,
+      .variance = static_cast<float>(height_variance(config.noise, view)),
+      .shared_variance = static_cast<float>(shared_variance(config.noise, view))};
+  fuse_height(config.mapper, measurement, cell, memory);
+}
+
+void fuse_points(const PerceptionConfig& config, const PlacedDepth& image, PointBins& bins,
+                 MapWindow& window) {
+  for (const SightLine& line : bins.sight_lines()) {
+    window.memory[line.near_cell].edge_frame = window.map.frames;
+  }
+  for (std::size_t bin = 0; bin < bins.size(); ++bin) {
+    const std::size_t index = bins.cell(bin);
+    const std::span<MapPoint> points = bins.points(bin);
+    const Eigen::Vector3d p_WP = cell_centre(window.map, index, points.front().height);
+    const ViewOfCell view = view_of(p_WP, image.X_WC);
+    if (!(view.depth > 0.0) || std::abs(view.rise) < kLevelSight) continue;
+    const double expected = expected_points(config.mapper, image, p_WP, view);
+    const CellReading reading = read_cell(config.mapper, expected, points);
+    if (reading.kind == CellReadingKind::nothing) continue;
+    fuse_reading(config, view, reading, index, window);
+  }
+}
+
+void fuse_sight_lines(const MapperConfig& config, const Eigen::Vector3d& p_WC,
+                      const PointBins& bins, std::vector<CellUnderRay>& under_ray,
+                      MapWindow& window) {
+  for (const SightLine& line : bins.sight_lines()) {
+    cells_under_ray(window.map, p_WC, line, under_ray);
+    for (const CellUnderRay& under : under_ray) {
+      fuse_sight(config, under.ray_height, window.map.frames, window.map.cells[under.cell],
+                 window.memory[under.cell]);
+    }
+  }
+}
+
+/// Marks all cells whose centre lies under one sole, or beside it within the margin.
+void fuse_sole(const MapperConfig& config, const model::RobotParameters& robot,
+               const Eigen::Isometry3d& X_WF, MapWindow& window) {
+  core::TerrainMap& map = window.map;
+  const double half_length = 0.5 * (robot.toe + robot.heel);
+  const double half_width = 0.5 * robot.foot_width + config.support_margin;
+  const Eigen::Isometry3d X_FW = X_WF.inverse();
+  const double reach = half_length + half_width;
+  const Eigen::Vector3d p = X_WF.translation();
+  const int first_x = static_cast<int>((p.x() - reach - map.origin_x) / map.resolution);
+  const int first_y = static_cast<int>((p.y() - reach - map.origin_y) / map.resolution);
+  const int span = static_cast<int>(2.0 * reach / map.resolution) + 2;
+  for (int iy = first_y; iy < first_y + span; ++iy) {
+    for (int ix = first_x; ix < first_x + span; ++ix) {
+      if (!map.contains(ix, iy)) continue;
+      const std::size_t index = static_cast<std::size_t>(iy * map.size_x + ix);
+      const Eigen::Vector3d p_F = X_FW * cell_centre(map, index, static_cast<float>(p.z()));
+      if (std::abs(p_F.x()) > half_length || std::abs(p_F.y()) > half_width) continue;
+      const Eigen::Vector3d on_sole = X_WF * Eigen::Vector3d(p_F.x(), p_F.y(), 0.0);
+      set_support(static_cast<float>(on_sole.z()), static_cast<float>(config.support_sigma),
+                  map.cells[index], window.memory[index]);
+    }
+  }
+}
+
+}  // namespace
+
+TerrainMapper::TerrainMapper(const PerceptionConfig& config, const model::RobotParameters& robot)
+    : config_(config),
+      robot_(robot),
+      memory_(std::make_unique<Memory>(config, Eigen::Vector2d(config.mapper.window_ahead, 0.0))) {}
+
+TerrainMapper::~TerrainMapper() = default;
+TerrainMapper::TerrainMapper(TerrainMapper&&) noexcept = default;
+TerrainMapper& TerrainMapper::operator=(TerrainMapper&&) noexcept = default;
+
+MapStatus TerrainMapper::integrate(const core::DepthFrame& frame,
+                                   const core::RobotState& at_exposure) {
+  core::TerrainMap& map = memory_->window.map;
+  if (!is_sound(frame)) return MapStatus::bad_frame;
+  if (!is_pose_finite(at_exposure)) return MapStatus::bad_state;
+  if (map.frames > 0 && frame.stamp <= map.stamp) return MapStatus::stale;
+  // Written so that a speed that is not a number counts as too fast.
+  const bool slow = at_exposure.v_WB.norm() <= config_.mapper.speed_max &&
+                    at_exposure.w_WB.norm() <= config_.mapper.angular_speed_max;
+  if (!slow) return MapStatus::moving;
+  const BodyCapsules body = body_in_camera(robot_, at_exposure.q, frame.X_BC);
+  if (memory_->filter.filter(frame, body, memory_->depth).kept == 0) return MapStatus::blind;
+
+  follow(config_.mapper, window_centre(config_.mapper, at_exposure), memory_->window);
+  const Eigen::Isometry3d X_WC = pose_of_trunk(at_exposure) * frame.X_BC;
+  const BinningLimits limits{.ahead = heading_of(at_exposure),
+                             .lateral_max = config_.mapper.lateral_max,
+                             .column_step = config_.mapper.column_step,
+                             .near_row_step = config_.mapper.near_row_step,
+                             .hidden_length = kHiddenCells * config_.mapper.resolution};
+  const PlacedDepth image{frame.intrinsics, memory_->depth, X_WC};
+  memory_->bins.fill(image, map, limits);
+  fuse_points(config_, image, memory_->bins, memory_->window);
+  fuse_sight_lines(config_.mapper, X_WC.translation(), memory_->bins, memory_->under_ray,
+                   memory_->window);
+  map.stamp = frame.stamp;
+  ++map.frames;
+  return MapStatus::fused;
+}
+
+MapStatus TerrainMapper::anchor_support(const core::RobotState& state) {
+  if (!is_pose_finite(state)) return MapStatus::bad_state;
+  follow(config_.mapper, window_centre(config_.mapper, state), memory_->window);
+  for (const Eigen::Isometry3d& X_WF : model::sole_poses(robot_, state)) {
+    fuse_sole(config_.mapper, robot_, X_WF, memory_->window);
+  }
+  return MapStatus::fused;
+}
+
+const core::TerrainMap& TerrainMapper::map() const {
+  return memory_->window.map;
+}
+
+}  // namespace hopscotch::perception

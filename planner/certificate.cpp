@@ -1,0 +1,217 @@
+#include "planner/certificate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "planner/forward_dynamics.hpp"
+#include "planner/shared_limits.hpp"
+
+namespace hopscotch::planner {
+
+namespace {
+
+constexpr double kGrid = 1e-3;           // [s]
+constexpr double kFlightEnds = 0.2;      // share of the flight near the ground at either end
+constexpr double kTerrainScale = 0.1;    // [m]
+constexpr double kContactAllowance = 2e-3;  // sole and terrain touch: rounding of the spline [m]
+
+enum Check : std::size_t {
+  kHipTorque, kKneeTorque, kAnkleTorque,
+  kHipLine, kKneeLine, kAnkleLine,
+  kHipPower, kKneePower, kAnklePower,
+  kHipSpeed, kKneeSpeed, kAnkleSpeed,
+  kHipRange, kKneeRange, kAnkleRange,
+  kNormalForce, kFriction, kToePressure, kHeelPressure,
+  kToeClearance, kHeelClearance, kKneeClearance,
+  kChecks
+};
+constexpr std::array<std::string_view, kChecks> kNames{
+    "hip torque",      "knee torque",     "ankle torque",       "hip torque-speed line",
+    "knee torque-speed line", "ankle torque-speed line", "hip power", "knee power",
+    "ankle power",     "hip speed",       "knee speed",         "ankle speed",
+    "hip range",       "knee range",      "ankle range",        "normal force",
+    "friction",        "toe pressure",    "heel pressure",      "toe clearance",
+    "heel clearance",  "knee clearance"};
+static_assert(kChecks <= core::Certificate::kMaxEntries);
+
+/// Collects the smallest margin of each check and the peaks.
+class Examiner {
+ public:
+  Examiner(const PlanarModel& model, const PlanarTask& task, const PlanarMotion& motion)
+      : model_(model), task_(task), motion_(motion),
+        limits_(motor_limits(model.robot, Reserves{1.0, 1.0, 1.0, 1.0})) {
+    margin_.fill(std::numeric_limits<double>::infinity());
+    time_.fill(core::kNaN);
+  }
+
+  void examine(const PlanarInstant& now, double time) {
+    examine_motors(now, time);
+    examine_ranges(now, time);
+    if (now.phase == core::JumpPhase::flight) {
+      examine_clearance(now, time);
+    } else {
+      examine_ground(now, time);
+    }
+  }
+
+  void note_violation(double size) { violation_ = std::max(violation_, size); }
+
+  [[nodiscard]] CertifiedMotion result() const {
+    CertifiedMotion out;
+    double violation = violation_;
+    for (std::size_t i = 0; i < kChecks; ++i) {
+      out.certificate.entries[i] = {kNames[i], margin_[i], time_[i]};
+      violation = std::max(violation, -margin_[i]);
+    }
+    out.certificate.count = kChecks;
+    out.certificate.dense_max_violation = violation;
+    out.peaks = peaks_;
+    return out;
+  }
+
+ private:
+  void note(std::size_t check, double margin, double time) {
+    if (margin_[check] <= margin) return;
+    margin_[check] = margin;
+    time_[check] = time;
+  }
+
+  void examine_motors(const PlanarInstant& now, double time) {
+    const model::PlanarJoints<double> torque = model::motor_torques_from_joints(now.tau);
+    const model::PlanarJoints<double> speed = model::motor_rates_from_links(now.links.rate);
+    examine_motor(0, limits_.hip, torque.hip, speed.hip, time);
+    examine_motor(1, limits_.knee, torque.knee, speed.knee, time);
+    examine_motor(2, limits_.ankle, torque.ankle, speed.ankle, time);
+  }
+
+  void examine_motor(std::size_t motor, const MotorLimit& limit, double torque, double speed,
+                     double time) {
+    const double torque_ratio = std::abs(torque) / limit.torque;
+    const double speed_ratio = std::abs(speed) / limit.speed;
+    const double power_ratio = std::max(0.0, torque * speed) / limit.power;
+    note(kHipTorque + motor, 1.0 - torque_ratio, time);
+    note(kHipSpeed + motor, 1.0 - speed_ratio, time);
+    note(kHipPower + motor, 1.0 - power_ratio, time);
+    if (torque * speed > 0.0) {
+      const double line =
+          torque_ratio * (limit.speed - limit.corner_speed) / limit.speed + speed_ratio;
+      note(kHipLine + motor, 1.0 - line, time);
+    }
+    peaks_.torque_ratio = std::max(peaks_.torque_ratio, torque_ratio);
+    peaks_.speed_ratio = std::max(peaks_.speed_ratio, speed_ratio);
+    peaks_.power_ratio = std::max(peaks_.power_ratio, power_ratio);
+  }
+
+  void examine_ranges(const PlanarInstant& now, double time) {
+    const model::PlanarJoints<double> q = model::joints_from_links(now.links.pitch);
+    const std::array<std::pair<core::Joint, double>, 3> joints{
+        {{core::Joint::hip_pitch, q.hip}, {core::Joint::knee, q.knee}, {core::Joint::ankle, q.ankle}}};
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const model::JointRange range =
+          model::joint_range(model_.robot, core::Leg::left, joints[i].first);
+      const double angle = joints[i].second;
+      const double distance = std::min(angle - range.lower, range.upper - angle);
+      note(kHipRange + i, distance / (0.5 * (range.upper - range.lower)), time);
+    }
+  }
+
+  void examine_ground(const PlanarInstant& now, double time) {
+    const model::PlanarChain& chain = model_.dynamics.chain();
+    const double fz = now.force.z;
+    note(kNormalForce, fz / (chain.total_mass() * model::kGravity), time);
+    peaks_.normal_force = std::max(peaks_.normal_force, fz);
+    if (fz <= 0.0) return;
+    note(kFriction, 1.0 - std::abs(now.force.x) / (model_.config.friction * fz), time);
+    const double pressure = -(now.moment + chain.sole_height * now.force.x) / fz;
+    note(kToePressure, (chain.toe - pressure) / chain.toe, time);
+    note(kHeelPressure, (chain.heel + pressure) / chain.heel, time);
+  }
+
+  void examine_clearance(const PlanarInstant& now, double time) {
+    const model::PlanarDynamics& dynamics = model_.dynamics;
+    const double toe = above(now, dynamics.toe(now.links.pitch));
+    const double heel = above(now, dynamics.heel(now.links.pitch));
+    const double knee = above(now, dynamics.knee(now.links.pitch)) - model_.robot.shank_radius;
+    note_violation((-kContactAllowance - std::min({toe, heel, knee})) / kTerrainScale);
+    const double share = (time - motion_.liftoff_time) /
+                         (motion_.touchdown_time - motion_.liftoff_time);
+    if (share < kFlightEnds || share > 1.0 - kFlightEnds) return;
+    note(kToeClearance, toe / model_.config.clearance, time);
+    note(kHeelClearance, heel / model_.config.clearance, time);
+    note(kKneeClearance, knee / model_.config.clearance, time);
+  }
+
+  [[nodiscard]] double above(const PlanarInstant& now,
+                             const model::PlanarVector<double>& from_ankle) const {
+    const double x = now.ankle.x + from_ankle.x;
+    return now.ankle.z + from_ankle.z - task_.terrain.at(x).height;
+  }
+
+  const PlanarModel& model_;
+  const PlanarTask& task_;
+  const PlanarMotion& motion_;
+  MotorLimits limits_;
+  std::array<double, kChecks> margin_{};
+  std::array<double, kChecks> time_{};
+  double violation_ = 0.0;
+  core::PlanPeaks peaks_{0.0, 0.0, 0.0, 0.0};
+};
+
+/// The motion at the end of `elapsed` when the torques planned for the middle of the step are held.
+PlanarInstant with_held_torque(const PlanarModel& model, const PlanarMotion& motion,
+                               const PlanarKnot& knot, const LinkState& links, double elapsed,
+                               const model::PlanarJoints<double>& tau) {
+  PlanarKnot held = knot;
+  held.links = links;
+  held.time = knot.time + elapsed;
+  held.acceleration = knot.phase == core::JumpPhase::flight
+                          ? flight_acceleration(model.dynamics, links, tau)
+                          : stance_acceleration(model.dynamics, links, tau);
+  return instant(model, motion, held, 0.0);
+}
+
+double largest_speed(const model::RobotParameters& robot) {
+  double speed = 0.0;
+  for (const model::MotorParameters& motor : robot.motors) speed = std::max(speed, motor.speed_max);
+  return speed;
+}
+
+/// Distance between the integrated and the planned end of a step.
+double mismatch(const LinkState& reached, const LinkState& planned, double speed_max) {
+  double error = 0.0;
+  for (std::size_t j = 0; j < model::kPlanarLinks; ++j) {
+    error = std::max({error, std::abs(reached.pitch[j] - planned.pitch[j]),
+                      std::abs(reached.rate[j] - planned.rate[j]) / speed_max});
+  }
+  return error;
+}
+
+void examine_step(const PlanarModel& model, const PlanarMotion& motion, const PlanarKnot& knot,
+                  Examiner& examiner) {
+  const model::PlanarJoints<double> tau = instant(model, motion, knot, 0.5 * knot.dt).tau;
+  const int samples = std::max(1, static_cast<int>(std::ceil(knot.dt / kGrid)));
+  LinkState links = knot.links;
+  for (int i = 0; i <= samples; ++i) {
+    const double elapsed = knot.dt * i / samples;
+    examiner.examine(with_held_torque(model, motion, knot, links, elapsed, tau),
+                     knot.time + elapsed);
+    if (i < samples) {
+      links = integrate(model.dynamics, knot.phase, links, tau, knot.dt / samples);
+    }
+  }
+  const LinkState planned = instant(model, motion, knot, knot.dt).links;
+  examiner.note_violation(mismatch(links, planned, largest_speed(model.robot)));
+}
+
+}  // namespace
+
+CertifiedMotion certify(const PlanarModel& model, const PlanarTask& task,
+                        const PlanarMotion& motion) {
+  Examiner examiner(model, task, motion);
+  for (const PlanarKnot& knot : motion.knots) examine_step(model, motion, knot, examiner);
+  return examiner.result();
+}
+
+}  // namespace hopscotch::planner

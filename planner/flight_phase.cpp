@@ -1,0 +1,72 @@
+#include "planner/flight_phase.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace hopscotch::planner {
+
+namespace {
+
+template <std::size_t N>
+std::array<int, N> following(int first) {
+  std::array<int, N> at{};
+  for (std::size_t i = 0; i < N; ++i) at[i] = first + static_cast<int>(i);
+  return at;
+}
+
+void add_liftoff(const PlanarModel& model, const DecisionLayout& layout, BlockList& blocks) {
+  const model::PlanarVector<double> ankle{model.ankle_x(), model.dynamics.chain().sole_height};
+  const LiftoffLaw law{model.dynamics, ankle};
+  std::array<int, 11> at{};
+  const std::array<int, 6> knot = following<6>(layout.takeoff(layout.steps().takeoff));
+  const std::array<int, 5> flight = following<5>(layout.liftoff_com());
+  std::copy(flight.begin(), flight.end(), std::copy(knot.begin(), knot.end(), at.begin()));
+  blocks.push_back(std::make_unique<KnotBlock<LiftoffLaw, 11>>(law, at));
+}
+
+void add_momentum(const PlanarModel& model, const DecisionLayout& layout, int knot,
+                  BlockList& blocks) {
+  std::array<int, 9> at = following<9>(layout.flight(knot));
+  at[8] = layout.momentum();
+  blocks.push_back(std::make_unique<KnotBlock<MomentumLaw, 9>>(MomentumLaw{model.dynamics}, at));
+}
+
+void add_clearance(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
+                   int knot, BlockList& blocks) {
+  const double share = static_cast<double>(knot) / layout.steps().flight;
+  const ClearanceLaw law{model.dynamics, task.terrain, static_cast<double>(knot),
+                         clearance_profile(task.clearance, share), model.config.knee_clearance};
+  std::array<int, 9> at = following<9>(layout.flight(knot));
+  const std::array<int, 4> com = following<4>(layout.liftoff_com());
+  std::copy(com.begin(), com.end(), at.begin() + 4);
+  at[8] = layout.flight_step();
+  blocks.push_back(std::make_unique<KnotBlock<ClearanceLaw, 9>>(law, at));
+}
+
+}  // namespace
+
+double clearance_profile(double clearance, double s) {
+  const double wave = std::sin(std::numbers::pi * s);
+  return clearance * wave * wave;
+}
+
+void add_flight(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
+                BlockList& blocks) {
+  const PlannerConfig& config = model.config;
+  const int steps = layout.steps().flight;
+  const FlightLaw law{model.dynamics,
+                      {motor_limits(model.robot, config.reserves)},
+                      StepObjective(config.flight_cost, 1.0 / steps, task.final_posture)};
+  const JointRows<kFlightDof> joints = joint_rows<kFlightDof>(model.robot, config);
+  using Step = StepBlock<FlightLaw, kFlightDof, StepLength::free>;
+  using Knot = KnotBlock<JointRows<kFlightDof>, 2 * kFlightDof>;
+  add_liftoff(model, layout, blocks);
+  for (int k = 0; k < steps; ++k) {
+    blocks.push_back(std::make_unique<Step>(law, layout.flight_step_variables(k), 1.0));
+    blocks.push_back(std::make_unique<Knot>(joints, following<8>(layout.flight(k + 1))));
+    add_momentum(model, layout, k + 1, blocks);
+    if (k + 1 < steps) add_clearance(model, task, layout, k + 1, blocks);
+  }
+}
+
+}  // namespace hopscotch::planner

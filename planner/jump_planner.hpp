@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/jump_plan.hpp"
+#include "core/landing_target.hpp"
+#include "core/result.hpp"
+#include "core/robot_state.hpp"
+#include "model/robot_parameters.hpp"
+#include "model/stand_posture.hpp"
+#include "planner/planner_config.hpp"
+
+namespace hopscotch::planner {
+
+/// Where the solver starts from.
+enum class StartGuess : std::uint8_t {
+  kinematic,  ///< Closed form, from the request alone: the same request gives the same plan.
+  previous,   ///< The planner's last solved jump where there is one, else kinematic.
+};
+
+struct PlanRequest {
+  core::RobotState start;      ///< Feet flat on the ground at the origin of the target's frame S.
+  core::LandingTarget target;  ///< Where to, and the terrain in between.
+  model::StandPosture final_posture;  ///< At rest, at the target.
+  std::uint64_t id = 0;
+  StartGuess guess = StartGuess::kinematic;
+};
+
+/// Plans one jump: takeoff, flight and landing as one nonlinear program over the exact sagittal
+/// dynamics (eqs. (2)-(12) with the readings of docs/decisions), solved by Ipopt, certified against
+/// the physical limits on a 1 ms grid and lifted to 3-D. Deterministic: stops on iterations, not on
+/// time. Not for the control tick (0.1 s, allocates). One instance per thread.
+class JumpPlanner {
+ public:
+  /// @throws std::invalid_argument if the configured steps do not fit into a JumpPlan.
+  JumpPlanner(const PlannerConfig& config, const model::RobotParameters& robot);
+  ~JumpPlanner();
+  JumpPlanner(JumpPlanner&&) noexcept;
+  JumpPlanner& operator=(JumpPlanner&&) noexcept;
+
+  /// @return a plan that ends at rest, or why there is none: target_malformed (not finite, beside
+  ///         the jump line, terrain unknown on the way), out_of_reach (final posture impossible),
+  ///         bad_sensor_value (start not finite), plan_infeasible (with iterations and violation),
+  ///         certificate_refused (with the binding limit). `iterations` counts Ipopt's.
+  core::Result<core::JumpPlan> plan(const PlanRequest& request);
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+};
+
+}  // namespace hopscotch::planner

@@ -1,0 +1,136 @@
+#include "planner/planar_task.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "model/kinematics.hpp"
+
+namespace hopscotch::planner {
+
+namespace {
+
+using core::Reason;
+using core::Refusal;
+
+/// Farther than any jump of this robot; beyond it the terrain profile ends.
+constexpr double kDistanceMax = 1.2;  // [m]
+constexpr double kHeightMax = 0.8;    // [m]
+/// A start whose feet are farther from the origin of S belongs to another target.
+constexpr double kStartOffsetMax = 0.10;  // [m]
+constexpr double kTiltMax = 0.7;          // [rad]
+
+template <typename... Numbers>
+std::string sentence(const char* format, Numbers... numbers) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, numbers...);
+  return text;
+}
+
+bool is_finite(const core::RobotState& state) {
+  return state.p_WB.allFinite() && state.R_WB.allFinite() && state.v_WB.allFinite() &&
+         state.w_WB.allFinite() && state.q.allFinite() && state.dq.allFinite();
+}
+
+double mean_of_legs(const core::JointVector& v, core::Joint joint) {
+  return 0.5 * (v(core::joint_index(core::Leg::left, joint)) +
+                v(core::joint_index(core::Leg::right, joint)));
+}
+
+LinkState projected(const core::RobotState& state, double heading) {
+  const Eigen::Vector3d lateral(-std::sin(heading), std::cos(heading), 0.0);
+  LinkState links;
+  const double pitch = model::rpy_from_rotation(state.R_WB).y();
+  const double rate = state.w_WB.dot(lateral);
+  const auto chain = [](double trunk, const core::JointVector& v) {
+    const double thigh = trunk + mean_of_legs(v, core::Joint::hip_pitch);
+    const double shank = thigh + mean_of_legs(v, core::Joint::knee);
+    return model::LinkArray<double>{0.0, shank, thigh, trunk};
+  };
+  links.pitch = chain(pitch, state.q);
+  links.rate = chain(rate, state.dq);
+  return links;
+}
+
+std::optional<Refusal> check_target(const PlannerConfig& config, const core::LandingTarget& target) {
+  if (!std::isfinite(target.distance) || !std::isfinite(target.height) ||
+      !std::isfinite(target.heading) || !target.p_WS.allFinite()) {
+    return Refusal{Reason::target_malformed, "target or its frame is not a finite number"};
+  }
+  if (target.distance <= 0.0 || target.distance > kDistanceMax ||
+      std::abs(target.height) > kHeightMax) {
+    return Refusal{Reason::target_malformed,
+                   sentence("distance %.3f m, height %.3f m, but 0 < distance <= %.1f and "
+                            "|height| <= %.1f",
+                            target.distance, target.height, kDistanceMax, kHeightMax)};
+  }
+  const Eigen::Isometry3d X_SW =
+      (Eigen::Translation3d(target.p_WS) *
+       Eigen::AngleAxisd(target.heading, Eigen::Vector3d::UnitZ()))
+          .inverse();
+  const Eigen::Isometry3d left = X_SW * target.X_WF[0];
+  const Eigen::Isometry3d right = X_SW * target.X_WF[1];
+  const double lateral = 0.5 * (left.translation().y() + right.translation().y());
+  const double yaw = std::atan2(left.linear()(1, 0), left.linear()(0, 0));
+  if (!(std::abs(lateral) <= config.lateral_tolerance) ||
+      !(std::abs(yaw) <= config.yaw_tolerance)) {
+    return Refusal{Reason::target_malformed,
+                   sentence("target is %.3f m beside the jump line and turned by %.3f rad; at most "
+                            "%.3f m and %.3f rad",
+                            lateral, yaw, config.lateral_tolerance, config.yaw_tolerance)};
+  }
+  return std::nullopt;
+}
+
+std::optional<Refusal> check_start(const PlanarModel& model, const PlanRequest& request) {
+  const core::RobotState& start = request.start;
+  if (!is_finite(start)) {
+    return Refusal{Reason::bad_sensor_value, "start state is not a finite number"};
+  }
+  const std::array<Eigen::Isometry3d, core::kLegs> soles = model::sole_poses(model.robot, start);
+  const Eigen::Vector3d middle = 0.5 * (soles[0].translation() + soles[1].translation());
+  const double offset = (middle - request.target.p_WS).norm();
+  if (offset > kStartOffsetMax) {
+    return Refusal{Reason::target_malformed,
+                   sentence("soles are %.3f m from the origin of the jump, at most %.3f m", offset,
+                            kStartOffsetMax)};
+  }
+  const Eigen::Vector3d rpy = model::rpy_from_rotation(start.R_WB);
+  if (std::abs(rpy.x()) > kTiltMax || std::abs(rpy.y()) > kTiltMax) {
+    return Refusal{Reason::plan_infeasible,
+                   sentence("trunk leans by roll %.2f and pitch %.2f rad at the start, at most "
+                            "%.2f rad",
+                            rpy.x(), rpy.y(), kTiltMax)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+core::Result<PlanarTask> planar_task(const PlanarModel& model, const PlanRequest& request) {
+  const core::LandingTarget& target = request.target;
+  if (std::optional<Refusal> refusal = check_target(model.config, target)) return *refusal;
+  if (std::optional<Refusal> refusal = check_start(model, request)) return *refusal;
+  const std::optional<model::StandPose> end =
+      model::stand_pose(model.robot, request.final_posture);
+  if (!end) return Refusal{Reason::out_of_reach, "the legs cannot reach the final posture"};
+  const double half = 0.5 * (model.robot.toe + model.robot.heel);
+  core::Result<SmoothTerrain> terrain = SmoothTerrain::from_profile(
+      target.profile, SolePlace{-half, half, 0.0},
+      SolePlace{target.distance - half, target.distance + half, target.height});
+  if (!terrain) return terrain.error();
+  const PlannerConfig& config = model.config;
+  const double clearance =
+      std::max(config.clearance_min,
+               config.clearance - config.clearance_per_height * std::abs(target.height));
+  return PlanarTask{projected(request.start, target.heading),
+                    end->pitch,
+                    target.distance,
+                    target.height,
+                    clearance,
+                    *terrain};
+}
+
+}  // namespace hopscotch::planner

@@ -1,0 +1,66 @@
+#include "planner/takeoff_phase.hpp"
+
+#include "planner/block_forms.hpp"
+
+namespace hopscotch::planner {
+
+ShankRange shank_range(const PlanarModel& model, const SmoothTerrain& terrain,
+                       const model::PlanarVector<double>& ankle) {
+  constexpr double kStep = 0.005;  // [rad]: 1 mm at the knee
+  const double limit = model.config.shank_pitch_max;
+  const auto is_clear = [&](double pitch) {
+    const model::PlanarVector<double> knee =
+        model.dynamics.knee(model::LinkArray<double>{0.0, pitch, 0.0, 0.0});
+    const double ground = terrain.at(ankle.x + knee.x).height;
+    return ankle.z + knee.z >= ground + model.config.knee_clearance;
+  };
+  ShankRange range;
+  while (range.lower - kStep > -limit && is_clear(range.lower - kStep)) range.lower -= kStep;
+  while (range.upper + kStep < limit && is_clear(range.upper + kStep)) range.upper += kStep;
+  return range;
+}
+
+void add_smoothness(const PlanarModel& model, const DecisionLayout& layout, BlockList& blocks) {
+  const PlannerConfig& config = model.config;
+  const int steps = layout.steps().takeoff;
+  const double mean_step = config.takeoff_time() / steps;
+  for (int k = 0; k + 2 <= steps; ++k) {
+    const double first = config.takeoff_step(k);
+    const double second = config.takeoff_step(k + 1);
+    // The integral of the squared rate of change of acceleration, for equal steps that of `change`.
+    const double weight = config.smoothness_cost / steps * mean_step / (0.5 * (first + second));
+    const SmoothnessLaw smoothness{weight, first, second};
+    for (int d = 0; d < kStanceDof; ++d) {
+      const std::array<int, 3> rates{layout.takeoff(k) + kStanceDof + d,
+                                     layout.takeoff(k + 1) + kStanceDof + d,
+                                     layout.takeoff(k + 2) + kStanceDof + d};
+      blocks.push_back(std::make_unique<KnotBlock<SmoothnessLaw, 3>>(smoothness, rates));
+    }
+  }
+}
+
+void add_takeoff(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
+                 BlockList& blocks) {
+  const PlannerConfig& config = model.config;
+  const int steps = layout.steps().takeoff;
+  const MotorRows motors{motor_limits(model.robot, config.reserves)};
+  const GroundRows ground =
+      ground_rows(model.dynamics.chain(), config, config.takeoff_cop_margin);
+  const JointRows<kStanceDof> joints = joint_rows<kStanceDof>(model.robot, config);
+  using Step = StepBlock<StanceLaw, kStanceDof, StepLength::fixed>;
+  using Knot = KnotBlock<JointRows<kStanceDof>, 2 * kStanceDof>;
+  for (int k = 0; k < steps; ++k) {
+    const std::array<int, 12> ends = layout.takeoff_step_variables(k);
+    const double step = config.takeoff_step(k);
+    const StanceLaw law{model.dynamics, motors, ground,
+                        StepObjective(config.takeoff_cost, step / config.takeoff_time(),
+                                      task.final_posture)};
+    blocks.push_back(std::make_unique<Step>(law, ends, step));
+    std::array<int, 6> after{};
+    std::copy(ends.begin() + 6, ends.end(), after.begin());
+    blocks.push_back(std::make_unique<Knot>(joints, after));
+  }
+  add_smoothness(model, layout, blocks);
+}
+
+}  // namespace hopscotch::planner

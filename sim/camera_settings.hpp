@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+namespace hopscotch::sim {
+
+enum class CameraNoise : std::uint8_t { none, d435 };
+
+/// The simulated depth camera of a scenario: image, timing and mounting on the trunk. The defaults
+/// are those of the scenario file.
+struct CameraSettings {
+  CameraNoise noise = CameraNoise::d435;
+  int width = 640;        ///< [pixel]
+  int height = 480;       ///< [pixel]
+  double rate = 30.0;     ///< Exposures per second [Hz].
+  double latency = 0.04;  ///< From mid exposure to delivery [s].
+  double x = 0.09;        ///< Optical centre ahead of B [m].
+  double z = 0.08;        ///< Optical centre above B [m].
+  double pitch = 0.60;    ///< Of the optical axis below the trunk's x axis [rad].
+};
+
+}  // namespace hopscotch::sim

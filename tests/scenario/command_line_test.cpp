@@ -1,0 +1,135 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Answer {
+  int status = -1;
+  std::string output;  ///< Standard output and standard error.
+};
+
+Answer call(const std::string& arguments) {
+  const std::string line = std::string(HOPSCOTCH_PROGRAM) + " " + arguments + " 2>&1";
+  std::FILE* pipe = popen(line.c_str(), "r");
+  if (pipe == nullptr) return {};
+  Answer answer;
+  std::array<char, 4096> block{};
+  for (std::size_t n = 0; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;) {
+    answer.output.append(block.data(), n);
+  }
+  const int status = pclose(pipe);
+  answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return answer;
+}
+
+class CommandLine : public ::testing::Test {
+ protected:
+  CommandLine() : folder_(fs::temp_directory_path() / fs::path("hopscotch-" + unique_name())) {
+    fs::create_directories(folder_);
+  }
+  ~CommandLine() override { fs::remove_all(folder_); }
+
+  static std::string unique_name() {
+    return std::string(::testing::UnitTest::GetInstance()->current_test_info()->name());
+  }
+  fs::path write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(CommandLine, HelpIsThereForEachSubcommandWithAnExample) {
+  for (const char* command : {"run", "plan", "report", "doctor", "bench"}) {
+    const Answer answer = call(std::string(command) + " --help");
+    EXPECT_EQ(answer.status, 0) << command;
+    EXPECT_NE(answer.output.find("Example:"), std::string::npos) << command;
+  }
+}
+
+TEST_F(CommandLine, BadUsageIsStatusTwo) {
+  EXPECT_EQ(call("").status, 2);
+  EXPECT_EQ(call("fly").status, 2);
+  EXPECT_EQ(call("run").status, 2);
+  EXPECT_EQ(call("run x.yaml --perception eyes").status, 2);
+  EXPECT_EQ(call("plan --distance far").status, 2);
+}
+
+TEST_F(CommandLine, EstimatedStateIsRefusedUntilThereIsAnEstimator) {
+  const Answer answer = call("run " HOPSCOTCH_SOURCE_DIR "/config/scenarios/flat-leaps.yaml");
+  EXPECT_EQ(answer.status, 3);
+  EXPECT_NE(answer.output.find("--state truth"), std::string::npos);
+}
+
+TEST_F(CommandLine, ABrokenScenarioNamesFileLineAndRuleAndWritesNothing) {
+  const fs::path scenario = write("broken.yaml",
+                                  "name: broken\n"
+                                  "slabs:\n"
+                                  "  - {x_m: [-1.0, 2.0]}\n"
+                                  "goal: {x_m: 1.0}\n"
+                                  "frction: 0.5\n");
+  const fs::path out = folder_ / "out";
+  const Answer answer =
+      call("run " + scenario.string() + " --state truth --out " + out.string());
+  EXPECT_EQ(answer.status, 2);
+  EXPECT_NE(answer.output.find("broken.yaml:5"), std::string::npos) << answer.output;
+  EXPECT_NE(answer.output.find("frction"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out));
+}
+
+TEST_F(CommandLine, AMissingFileIsNamed) {
+  const Answer answer = call("run nowhere.yaml --state truth");
+  EXPECT_EQ(answer.status, 2);
+  EXPECT_NE(answer.output.find("nowhere.yaml"), std::string::npos);
+}
+
+TEST_F(CommandLine, ARunWritesAWholeFolder) {
+  const fs::path scenario = write("hop.yaml",
+                                  "name: hop\n"
+                                  "slabs:\n"
+                                  "  - {x_m: [-1.0, 3.0]}\n"
+                                  "goal: {jumps: 1}\n");
+  const fs::path out = folder_ / "out";
+  const Answer answer =
+      call("run " + scenario.string() + " --state truth --seed 5 --out " + out.string());
+  EXPECT_EQ(answer.status, 0) << answer.output;
+  for (const char* file : {"result.json", "run.lcm", "config.yaml", "report.html"}) {
+    EXPECT_GT(fs::file_size(out / file), 0U) << file;
+  }
+  EXPECT_FALSE(fs::exists(out.string() + ".partial"));
+  EXPECT_EQ(call("report " + out.string()).status, 0);
+}
+
+TEST_F(CommandLine, JsonIsAllThatStandsOnStandardOutput) {
+  const Answer answer = call("plan --distance 0.3 --json 2>/dev/null");
+  EXPECT_EQ(answer.status, 0);
+  EXPECT_EQ(answer.output.front(), '{');
+  EXPECT_NE(answer.output.find("\"hopscotch.plan/1\""), std::string::npos);
+}
+
+TEST_F(CommandLine, AnImpossiblePlanIsStatusOneWithTheReason) {
+  const Answer answer = call("plan --distance 1.5");
+  EXPECT_EQ(answer.status, 1);
+  EXPECT_NE(answer.output.find("no plan"), std::string::npos) << answer.output;
+}
+
+TEST_F(CommandLine, UnknownRobotsAreListedAgainstTheKnownOnes) {
+  const Answer answer = call("plan --distance 0.3 --robot atlas");
+  EXPECT_EQ(answer.status, 2);
+  EXPECT_NE(answer.output.find("hector-d14"), std::string::npos) << answer.output;
+}
+
+TEST_F(CommandLine, ReportRefusesWhatIsNoRunFolder) {
+  EXPECT_EQ(call("report " + folder_.string()).status, 2);
+}
+
+}  // namespace

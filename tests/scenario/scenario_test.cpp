@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include "apps/lockstep_run.hpp"
+
+namespace hopscotch::apps {
+namespace {
+
+constexpr const char* kConfig = HOPSCOTCH_SOURCE_DIR "/config/";
+
+RunRequest request_of(const sim::Scenario& scenario, Eyes eyes, std::uint64_t seed) {
+  const std::string config(kConfig);
+  RunRequest request;
+  request.scenario = scenario;
+  request.config = ProgramConfig::load(config + "hopscotch.yaml");
+  request.robot = model::RobotParameters::load(config + "robots/" + scenario.robot + ".yaml");
+  request.plant_robot =
+      model::RobotParameters::load(config + "robots/" + scenario.plant.robot + ".yaml");
+  request.seed = seed;
+  request.eyes = eyes;
+  return request;
+}
+
+RunResult result_of(const RunRequest& request) {
+  LockstepRun run(request);
+  while (run.step({})) {
+  }
+  return run.result();
+}
+
+RunResult run_text(const std::string& text, Eyes eyes = Eyes::camera) {
+  return result_of(request_of(sim::Scenario::from_text(text, "test"), eyes, 1));
+}
+
+class ShippedScenario : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedScenario, IsCrossedWithTheCamera) {
+  const std::string file = std::string(kConfig) + "scenarios/" + GetParam() + ".yaml";
+  // Any seed must do; this one is none of those that the campaign uses.
+  const RunResult result =
+      result_of(request_of(sim::Scenario::load(file), Eyes::camera, 4711));
+  EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
+  EXPECT_EQ(result.falls, 0);
+  for (const JumpResult& jump : result.jumps) {
+    EXPECT_EQ(jump.outcome, JumpOutcome::landed) << "jump " << jump.index << ": " << jump.reason;
+    EXPECT_LE(jump.peak.torque_ratio, 1.0 + 1e-9);  // the plant enforces the limits
+    EXPECT_LE(jump.peak.power_ratio, 1.0 + 1e-9);
+    EXPECT_GT(jump.flight, 0.1);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedScenario,
+                         ::testing::Values("flat-leaps", "stones", "rising-boxes", "uneven",
+                                           "surprise", "jump-down"),
+                         [](const auto& scenario) {
+                           std::string name = scenario.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(Scenario, RisingBoxesTakeLessThanSixSeconds) {
+  const RunResult result = result_of(request_of(
+      sim::Scenario::load(std::string(kConfig) + "scenarios/rising-boxes.yaml"), Eyes::camera, 3));
+  EXPECT_EQ(result.outcome, RunOutcome::completed);
+  EXPECT_LT(result.duration, 6.0);
+}
+
+TEST(Scenario, AGapTooWideIsRefusedStanding) {
+  const RunResult result = run_text(
+      "name: chasm\n"
+      "slabs:\n"
+      "  - {x_m: [-1.0, 0.15]}\n"
+      "  - {x_m: [1.4, 3.0]}\n"
+      "goal: {x_m: 1.6}\n");
+  EXPECT_EQ(result.outcome, RunOutcome::refused);
+  EXPECT_FALSE(result.reason.empty());
+  EXPECT_EQ(result.falls, 0);
+  for (const JumpResult& jump : result.jumps) EXPECT_EQ(jump.outcome, JumpOutcome::landed);
+}
+
+TEST(Scenario, AWallIsRefusedStanding) {
+  const RunResult result = run_text(
+      "name: wall\n"
+      "slabs:\n"
+      "  - {x_m: [-1.0, 0.25]}\n"
+      "  - {x_m: [0.25, 3.0], top_m: 0.6}\n"
+      "goal: {x_m: 1.0}\n");
+  EXPECT_EQ(result.outcome, RunOutcome::refused);
+  EXPECT_EQ(result.falls, 0);
+}
+
+TEST(Scenario, HeadingDoesNotMatter) {
+  const RunResult result = run_text(
+      "name: diagonal\n"
+      "slabs:\n"
+      "  - {x_m: [-2.0, 4.0], y_m: [-2.0, 4.0]}\n"
+      "start: {yaw_rad: 0.6}\n"
+      "goal: {jumps: 2}\n");
+  EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
+  ASSERT_EQ(result.jumps.size(), 2U);
+  EXPECT_NEAR(result.jumps[1].landing.distance, result.jumps[1].target.distance, 0.04);
+}
+
+TEST(Scenario, SameSeedSameRun) {
+  const std::string text =
+      "name: twice\n"
+      "slabs:\n"
+      "  - {x_m: [-1.0, 4.0]}\n"
+      "goal: {jumps: 1}\n";
+  RunResult first = run_text(text);
+  RunResult second = run_text(text);
+  first.timing = second.timing = {};
+  EXPECT_EQ(to_json(first), to_json(second));
+}
+
+TEST(Scenario, AHardPushInFlightIsSeenAsAFall) {
+  const RunResult result = run_text(
+      "name: pushed-over\n"
+      "slabs:\n"
+      "  - {x_m: [-1.0, 4.0]}\n"
+      "goal: {jumps: 3}\n"
+      "surprises:\n"
+      "  - {push: {phase: flight, after_s: 0.05, duration_s: 0.1, impulse_Ns: [0.0, 40.0, 0.0]}}\n",
+      Eyes::truth);
+  EXPECT_EQ(result.outcome, RunOutcome::fell);
+  EXPECT_EQ(result.falls, 1);
+}
+
+}  // namespace
+}  // namespace hopscotch::apps

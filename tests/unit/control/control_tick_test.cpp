@@ -1,0 +1,212 @@
+#include "control/control_tick.hpp"
+
+#include <gtest/gtest.h>
+
+#include "control/torque_law.hpp"
+#include "model/kinematics.hpp"
+#include "model/rigid_body.hpp"
+#include "tests/unit/control/fake_plan.hpp"
+
+namespace hopscotch::control {
+namespace {
+
+using core::RobotPhase;
+
+constexpr double kActuationDelay = 0.002;
+
+ControlConfig test_config() {
+  ControlConfig config;
+  config.gains.kp << 150, 150, 150, 150, 100;
+  config.gains.kd << 2, 2, 2, 2, 1;
+  config.gains.compliant_scale = 0.4;
+  config.supervisor = {.touchdown_from = 0.5,
+                       .flight_overtime = 0.1,
+                       .tilt_max = 1.25,
+                       .joint_overshoot = 0.35,
+                       .joint_speed_max = 40.0};
+  config.actuation_delay = kActuationDelay;
+  config.mpc_delay = 0.001;
+  config.wrench_age_max = 0.025;
+  config.anchor_time = 0.15;
+  return config;
+}
+
+class ControlTickTest : public ::testing::Test {
+ protected:
+  ControlTickTest() {
+    state_.p_WB = {0.0, 0.0, 0.5481};
+    state_.R_WB.setIdentity();
+    state_.v_WB.setZero();
+    state_.w_WB.setZero();
+    state_.q << 0, 0, 0.7854, -1.5708, 0.7854, 0, 0, 0.7854, -1.5708, 0.7854;
+    state_.dq.setZero();
+    state_.contact = {true, true};
+    plan_ = testing::jump_shaped_plan(state_.q);
+  }
+  core::JointCommand step(ControlTick& control) {
+    const core::JointCommand command = control.tick(state_);
+    state_.stamp.nanoseconds += 1'000'000;
+    return command;
+  }
+  ControlTick standing() {
+    return {test_config(), robot_, make_stand_plan(robot_, state_, state_.q, 0.0)};
+  }
+  /// Ticks until the phase is there; contact is lost in flight.
+  void run_to(ControlTick& control, RobotPhase phase) {
+    for (int i = 0; i < 1000 && control.phase() != phase; ++i) {
+      const bool contact = control.phase() != RobotPhase::flight;
+      state_.contact = {contact, contact};
+      step(control);
+    }
+    ASSERT_EQ(control.phase(), phase);
+    const bool contact = phase != RobotPhase::flight;
+    state_.contact = {contact, contact};
+  }
+
+  model::RobotParameters robot_ =
+      model::RobotParameters::load(HOPSCOTCH_SOURCE_DIR "/config/robots/hector.yaml");
+  core::RobotState state_;
+  core::JumpPlan plan_;
+};
+
+TEST_F(ControlTickTest, StandsOnTheStandPlanFromTheFirstTick) {
+  ControlTick control = standing();
+  const core::JointCommand command = step(control);
+  EXPECT_EQ(command.mode, core::DriveMode::active);
+  EXPECT_NEAR((command.q - state_.q).norm(), 0.0, 1e-12);
+  EXPECT_DOUBLE_EQ(command.kp[0], 60.0);
+}
+
+TEST_F(ControlTickTest, StandPlanPutsTheSolesWhereTheyAre) {
+  state_.p_WB = {1.0, 2.0, 0.7};
+  state_.R_WB = model::rotation_from_rpy({0.0, 0.0, 0.6});
+  const core::JumpPlan stand = make_stand_plan(robot_, state_, state_.q, 0.0);
+  EXPECT_NEAR((stand.knots[0].p_WB - state_.p_WB).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(stand.knots[0].rpy.z(), 0.6, 1e-9);
+}
+
+TEST_F(ControlTickTest, PlannedTorquesAreSentForTheMomentTheyAct) {
+  ControlTick control = standing();
+  step(control);
+  control.offer(plan_);
+  // Commands are looked up `actuation_delay` ahead of the body: at the first tick of the jump the
+  // body is not yet in it, at its n-th tick the command is the plan's at n ms.
+  for (int n = 0; n < 100; ++n) {
+    const core::JointCommand command = step(control);
+    EXPECT_NEAR((command.tau - sample_plan(plan_, 0.001 * n).tau).norm(), 0.0, 1e-9) << n;
+    EXPECT_NEAR(control.status().plan_time, 0.001 * n - kActuationDelay, 1e-9);
+  }
+}
+
+TEST_F(ControlTickTest, TakeoffAddsOnlyTheDeviationOfTheMpc) {
+  ControlTick control = standing();
+  step(control);
+  control.offer(plan_);
+  step(control);
+  MpcAnswer answer{.stamp = state_.stamp, .status = MpcStatus::solved, .form = MpcForm::error_state};
+  answer.planned[0].force = {0.0, 0.0, 70.0};
+  answer.wrenches[0].force = {0.0, 0.0, 90.0};
+  answer.planned[1] = answer.wrenches[1] = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
+  control.answer(answer);
+  const core::JointCommand command = step(control);
+  core::ContactWrenches deviation{};
+  deviation[0].force = {0.0, 0.0, 20.0};
+  const core::JointVector expected =
+      sample_plan(plan_, 0.001).tau + contact_torques(robot_, state_, deviation);
+  EXPECT_NEAR((command.tau - expected).norm(), 0.0, 1e-9);
+}
+
+TEST_F(ControlTickTest, StandingTorqueHoldsTheWeight) {
+  ControlTick control = standing();
+  step(control);
+  MpcAnswer answer{.stamp = state_.stamp, .status = MpcStatus::solved, .form = MpcForm::full};
+  const double weight = 9.80665 * robot_.total_mass();
+  for (core::Wrench& wrench : answer.wrenches) wrench.force = {0.0, 0.0, 0.5 * weight};
+  control.answer(answer);
+  const core::JointCommand command = step(control);
+  // Virtual work: sinking by bending the knees (feet level and in place) must cost the lost
+  // potential energy of the whole robot.
+  const double h = 1e-5;
+  core::RobotState sunk = state_;
+  sunk.q += h * (core::JointVector() << 0, 0, 1, -2, 1, 0, 0, 1, -2, 1).finished();
+  const auto soles = model::sole_poses(robot_, state_);
+  sunk.p_WB -= model::sole_poses(robot_, sunk)[0].translation() - soles[0].translation();
+  const double drop = model::composite_body(robot_, state_).p_WG.z() -
+                      model::composite_body(robot_, sunk).p_WG.z();
+  EXPECT_NEAR(command.tau.dot(sunk.q - state_.q), -weight * drop, 1e-4 * weight * h);
+}
+
+TEST_F(ControlTickTest, AnswersOfAnotherPhaseOrTooOldAreNotUsed) {
+  ControlTick control = standing();
+  step(control);
+  MpcAnswer answer{.stamp = state_.stamp, .status = MpcStatus::solved, .form = MpcForm::full};
+  answer.wrenches[0].force = {0.0, 0.0, 500.0};
+  control.answer(answer);
+  for (int i = 0; i < 30; ++i) step(control);
+  EXPECT_NEAR((step(control).tau - leg_weight_torques(robot_, state_)).norm(), 0.0, 1e-12);
+  EXPECT_GT(control.stale_ticks(), 0U);
+  control.offer(plan_);
+  answer.stamp = state_.stamp;
+  control.answer(answer);
+  EXPECT_NEAR((step(control).tau - sample_plan(plan_, 0.0).tau).norm(), 0.0, 1e-9);
+}
+
+TEST_F(ControlTickTest, TouchdownRestartsTheClockAtTheLanding) {
+  ControlTick control = standing();
+  step(control);
+  control.offer(plan_);
+  run_to(control, RobotPhase::flight);
+  for (int i = 0; i < 60; ++i) step(control);  // 40 ms before the planned touchdown
+  state_.contact = {true, false};
+  step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::landing);
+  EXPECT_TRUE(control.phase_changed());
+  EXPECT_LT(control.status().plan_time, plan_.touchdown_time + 0.002);
+  EXPECT_GT(control.status().plan_time, plan_.touchdown_time - 0.002);
+}
+
+TEST_F(ControlTickTest, LandingFollowsTheFeetAndRestIsThere) {
+  ControlTick control = standing();
+  step(control);
+  control.offer(plan_);
+  run_to(control, RobotPhase::flight);
+  for (int i = 0; i < 60; ++i) step(control);
+  state_.p_WB.x() += 0.37;
+  state_.contact = {true, true};
+  for (int i = 0; i < 200; ++i) step(control);
+  const core::RobotState rest = control.rest_state();
+  const auto rest_soles = model::sole_poses(robot_, rest);
+  const auto soles = model::sole_poses(robot_, state_);
+  const Eigen::Vector3d rest_mid =
+      0.5 * (rest_soles[0].translation() + rest_soles[1].translation());
+  const Eigen::Vector3d mid = 0.5 * (soles[0].translation() + soles[1].translation());
+  EXPECT_NEAR((rest_mid - mid).norm(), 0.0, 1e-9);
+}
+
+TEST_F(ControlTickTest, FlightKeepsTheFeetLevelWhenTheTrunkTurns) {
+  ControlTick control = standing();
+  step(control);
+  control.offer(plan_);
+  run_to(control, RobotPhase::flight);
+  const core::JointVector straight = step(control).q;
+  state_.R_WB = model::rotation_from_rpy({0.0, 0.2, 0.0});
+  const core::JointVector turned = step(control).q;
+  const int hip = core::joint_index(core::Leg::left, core::Joint::hip_pitch);
+  EXPECT_NEAR(turned[hip] - straight[hip], -0.2, 0.01);  // the plan itself moves a little in a tick
+}
+
+TEST_F(ControlTickTest, AFaultDampsAndStaysSo) {
+  ControlTick control = standing();
+  step(control);
+  const double q = state_.q[0];
+  state_.q[0] = core::kNaN;
+  EXPECT_EQ(step(control).mode, core::DriveMode::damp);
+  state_.q[0] = q;
+  const core::JointCommand command = step(control);
+  EXPECT_EQ(command.mode, core::DriveMode::damp);
+  EXPECT_TRUE(command.tau.isZero(0.0));
+  EXPECT_EQ(control.status().fault, core::Reason::bad_sensor_value);
+}
+
+}  // namespace
+}  // namespace hopscotch::control

@@ -1,0 +1,110 @@
+#include "perception/step_features.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/perception/flat_map.hpp"
+
+namespace hopscotch::perception {
+namespace {
+
+using core::EdgeKind;
+
+constexpr double kHalfCell = 0.0075 + 0.0025;  // grid plus half a slice [m]
+
+class StepFeaturesTest : public ::testing::Test {
+ protected:
+  core::OneStepTerrain features(const test::Course& course) {
+    const std::vector<Slice> slices = cut_slices(config_, test::known_map(course), stance_);
+    treads_ = find_treads(config_, slices);
+    core::OneStepTerrain terrain;
+    list_features(config_, slices, treads_, terrain);
+    return terrain;
+  }
+
+  OneStepConfig config_ = test::perception_config().one_step;
+  StancePose stance_{
+      .p_WS = {0.0, 0.0, 0.0}, .heading = 0.0, .half_stance = 0.098, .track_half_width = 0.04};
+  std::vector<Tread> treads_;
+};
+
+TEST_F(StepFeaturesTest, LevelGroundHasNone) {
+  const core::OneStepTerrain terrain = features({.blocks = {{-1.0, 3.0, 0.0}}});
+  EXPECT_EQ(terrain.edge_count, 0U);
+  EXPECT_EQ(terrain.gap_count, 0U);
+  EXPECT_EQ(treads_.size(), 1U);
+}
+
+TEST_F(StepFeaturesTest, GapHasTwoEdgesAndAWidth) {
+  const core::OneStepTerrain terrain = features({.blocks = {{-1.0, 0.40, 0.0}, {0.60, 3.0, 0.0}}});
+  ASSERT_EQ(terrain.gap_count, 1U);
+  EXPECT_NEAR(terrain.gaps[0].near_x, 0.40, kHalfCell);
+  EXPECT_NEAR(terrain.gaps[0].far_x, 0.60, kHalfCell);
+  EXPECT_GT(terrain.gaps[0].sigma, 0.0);
+  ASSERT_EQ(terrain.edge_count, 2U);
+  EXPECT_EQ(terrain.edges[0].kind, EdgeKind::gap_near);
+  EXPECT_EQ(terrain.edges[1].kind, EdgeKind::gap_far);
+}
+
+TEST_F(StepFeaturesTest, StepsUpAndDownAreEdgesWithTheirHeight) {
+  const core::OneStepTerrain terrain =
+      features({.blocks = {{-1.0, 0.40, 0.0}, {0.40, 0.90, 0.12}, {0.90, 3.0, -0.05}}});
+  ASSERT_EQ(terrain.edge_count, 2U);
+  EXPECT_EQ(terrain.edges[0].kind, EdgeKind::up);
+  EXPECT_NEAR(terrain.edges[0].x, 0.40, kHalfCell);
+  EXPECT_NEAR(terrain.edges[0].step, 0.12, 1e-6);
+  EXPECT_EQ(terrain.edges[1].kind, EdgeKind::down);
+  EXPECT_NEAR(terrain.edges[1].x, 0.90, kHalfCell);
+  EXPECT_NEAR(terrain.edges[1].step, -0.17, 1e-6);
+  EXPECT_EQ(terrain.gap_count, 0U);
+}
+
+TEST_F(StepFeaturesTest, SmallUnevennessIsNoStep) {
+  const core::OneStepTerrain terrain = features({.blocks = {{-1.0, 0.40, 0.0}, {0.40, 3.0, 0.02}}});
+  EXPECT_EQ(terrain.edge_count, 0U);
+}
+
+TEST_F(StepFeaturesTest, SlotThatNoFootFitsInIsPartOfTheGap) {
+  const core::OneStepTerrain terrain =
+      features({.blocks = {{-1.0, 0.40, 0.0}, {0.45, 0.55, -0.1}, {0.60, 3.0, 0.0}}});
+  ASSERT_EQ(terrain.gap_count, 1U);
+  EXPECT_NEAR(terrain.gaps[0].far_x - terrain.gaps[0].near_x, 0.20, 2.0 * kHalfCell);
+}
+
+TEST_F(StepFeaturesTest, FloorOfAPitIsNoTread) {
+  const core::OneStepTerrain terrain =
+      features({.blocks = {{-1.0, 0.40, 0.0}, {0.40, 0.80, -0.45}, {0.80, 3.0, 0.0}}});
+  ASSERT_EQ(terrain.gap_count, 1U);
+  EXPECT_NEAR(terrain.gaps[0].far_x, 0.80, kHalfCell);
+}
+
+TEST_F(StepFeaturesTest, LowerTreadThatAFootFitsOnIsKept) {
+  const core::OneStepTerrain terrain =
+      features({.blocks = {{-1.0, 0.40, 0.0}, {0.40, 0.80, -0.05}, {0.80, 3.0, 0.0}}});
+  EXPECT_EQ(terrain.gap_count, 0U);
+  ASSERT_EQ(terrain.edge_count, 2U);
+  EXPECT_EQ(terrain.edges[0].kind, EdgeKind::down);
+  EXPECT_EQ(terrain.edges[1].kind, EdgeKind::up);
+}
+
+TEST_F(StepFeaturesTest, EndOfTheWorldIsAnEdgeWithoutAGap) {
+  const core::OneStepTerrain terrain = features({.blocks = {{-1.0, 0.70, 0.0}}});
+  EXPECT_EQ(terrain.gap_count, 0U);
+  ASSERT_EQ(terrain.edge_count, 1U);
+  EXPECT_EQ(terrain.edges[0].kind, EdgeKind::gap_near);
+  EXPECT_NEAR(terrain.edges[0].x, 0.70, kHalfCell);
+  EXPECT_TRUE(std::isnan(terrain.edges[0].step)) << "nobody knows what is behind it";
+}
+
+TEST_F(StepFeaturesTest, MoreFeaturesThanFitAreCutNotOverrun) {
+  test::Course comb;
+  for (int i = -3; i < 15; ++i) comb.blocks.push_back({0.1 * i, 0.1 * i + 0.05, 0.0});
+  const core::OneStepTerrain terrain = features(comb);
+  EXPECT_LE(terrain.edge_count, core::OneStepTerrain::kMaxFeatures);
+  EXPECT_LE(terrain.gap_count, core::OneStepTerrain::kMaxFeatures);
+  EXPECT_GT(terrain.gap_count, 5U);
+}
+
+}  // namespace
+}  // namespace hopscotch::perception

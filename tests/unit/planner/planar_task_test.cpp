@@ -1,0 +1,124 @@
+#include "planner/planar_task.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/kinematics.hpp"
+#include "tests/unit/planner/planner_fixture.hpp"
+
+namespace hopscotch::planner {
+namespace {
+
+using testing_support::request;
+using testing_support::shipped_model;
+
+constexpr double kRounding = 1e-9;
+
+TEST(PlanarTask, StandingRobotIsInItsStandPosture) {
+  const PlanarModel model = shipped_model();
+  const core::Result<PlanarTask> task = planar_task(model, request(0.4, 0.1));
+  ASSERT_TRUE(task);
+  for (std::size_t j = 0; j < model::kPlanarLinks; ++j) {
+    EXPECT_NEAR(task->start.pitch[j], task->final_posture[j], kRounding);
+    EXPECT_NEAR(task->start.rate[j], 0.0, kRounding);
+  }
+}
+
+TEST(PlanarTask, AveragesTheLegs) {
+  const PlanarModel model = shipped_model();
+  PlanRequest uneven = request(0.4, 0.0);
+  uneven.start.q(core::joint_index(core::Leg::left, core::Joint::knee)) += 0.02;
+  uneven.start.q(core::joint_index(core::Leg::right, core::Joint::knee)) -= 0.02;
+  const core::Result<PlanarTask> task = planar_task(model, uneven);
+  ASSERT_TRUE(task);
+  EXPECT_NEAR(task->start.pitch[model::kShank], task->final_posture[model::kShank], kRounding);
+}
+
+TEST(PlanarTask, DoesNotDependOnTheHeading) {
+  const PlanarModel model = shipped_model();
+  const PlanRequest straight = request(0.4, 0.0);
+  PlanRequest turned = straight;
+  const Eigen::Isometry3d turn =
+      Eigen::Translation3d(1.0, -2.0, 0.3) * Eigen::AngleAxisd(0.9, Eigen::Vector3d::UnitZ());
+  turned.start.p_WB = turn * straight.start.p_WB;
+  turned.start.R_WB = turn.linear() * straight.start.R_WB;
+  turned.start.w_WB = turn.linear() * Eigen::Vector3d(0.0, 0.3, 0.0);
+  turned.target.p_WS = turn.translation();
+  turned.target.heading = 0.9;
+  for (Eigen::Isometry3d& X_WF : turned.target.X_WF) X_WF = turn * X_WF;
+  const core::Result<PlanarTask> task = planar_task(model, turned);
+  ASSERT_TRUE(task) << task.error().text();
+  EXPECT_NEAR(task->start.pitch[model::kTrunk], task->final_posture[model::kTrunk], kRounding);
+  EXPECT_NEAR(task->start.rate[model::kTrunk], 0.3, kRounding);
+}
+
+struct BadRequest {
+  const char* name;
+  void (*spoil)(PlanRequest&);
+  core::Reason reason;
+};
+
+class BadRequests : public testing::TestWithParam<BadRequest> {};
+
+TEST_P(BadRequests, AreRefusedByName) {
+  PlanRequest bad = request(0.4, 0.0);
+  GetParam().spoil(bad);
+  const core::Result<PlanarTask> task = planar_task(shipped_model(), bad);
+  ASSERT_FALSE(task);
+  EXPECT_EQ(task.error().reason, GetParam().reason);
+  EXPECT_FALSE(task.error().sentence.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadRequests,
+    testing::Values(
+        BadRequest{"NaN distance", [](PlanRequest& r) { r.target.distance = core::kNaN; },
+                   core::Reason::target_malformed},
+        BadRequest{"NaN height", [](PlanRequest& r) { r.target.height = core::kNaN; },
+                   core::Reason::target_malformed},
+        BadRequest{"NaN frame", [](PlanRequest& r) { r.target.p_WS.x() = core::kNaN; },
+                   core::Reason::target_malformed},
+        BadRequest{"backward", [](PlanRequest& r) { r.target.distance = -0.3; },
+                   core::Reason::target_malformed},
+        BadRequest{"far", [](PlanRequest& r) { r.target.distance = 5.0; },
+                   core::Reason::target_malformed},
+        BadRequest{"high", [](PlanRequest& r) { r.target.height = 2.0; },
+                   core::Reason::target_malformed},
+        BadRequest{"lateral",
+                   [](PlanRequest& r) {
+                     for (Eigen::Isometry3d& X : r.target.X_WF) X.translation().y() += 0.2;
+                   },
+                   core::Reason::target_malformed},
+        BadRequest{"turned",
+                   [](PlanRequest& r) {
+                     for (Eigen::Isometry3d& X : r.target.X_WF) {
+                       X.rotate(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()));
+                     }
+                   },
+                   core::Reason::target_malformed},
+        BadRequest{"NaN pose",
+                   [](PlanRequest& r) { r.target.X_WF[0].translation().y() = core::kNaN; },
+                   core::Reason::target_malformed},
+        BadRequest{"unknown ground",
+                   [](PlanRequest& r) {
+                     r.target.profile.upper.fill(std::numeric_limits<double>::infinity());
+                   },
+                   core::Reason::target_malformed},
+        BadRequest{"NaN joint", [](PlanRequest& r) { r.start.q(3) = core::kNaN; },
+                   core::Reason::bad_sensor_value},
+        BadRequest{"NaN rate", [](PlanRequest& r) { r.start.w_WB.y() = core::kNaN; },
+                   core::Reason::bad_sensor_value},
+        BadRequest{"elsewhere", [](PlanRequest& r) { r.start.p_WB.x() += 0.5; },
+                   core::Reason::target_malformed},
+        BadRequest{"impossible posture",
+                   [](PlanRequest& r) { r.final_posture.com_height = 0.9; },
+                   core::Reason::out_of_reach}),
+    [](const testing::TestParamInfo<BadRequest>& info) {
+      std::string name = info.param.name;
+      for (char& c : name) c = c == ' ' ? '_' : c;
+      return name;
+    });
+
+}  // namespace
+}  // namespace hopscotch::planner

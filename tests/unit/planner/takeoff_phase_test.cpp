@@ -1,0 +1,46 @@
+#include "planner/takeoff_phase.hpp"
+
+#include "tests/unit/planner/phase_fixture.hpp"
+
+namespace hopscotch::planner {
+namespace {
+
+using TakeoffPhase = testing_support::PhaseTest;
+
+TEST_F(TakeoffPhase, HasExactDerivatives) {
+  add_takeoff(model_, task_, layout_, blocks_);
+  expect_exact_derivatives();
+}
+
+TEST_F(TakeoffPhase, StandingStillSatisfiesEveryRow) {
+  add_takeoff(model_, task_, layout_, blocks_);
+  const std::array<double, kFlightDof> y = coordinates_from_links(task_.start.pitch);
+  const ConstraintBlock& step = *blocks_.front();
+  const std::size_t rows = static_cast<std::size_t>(step.rows());
+  std::vector<double> value(rows);
+  std::vector<double> lower(rows);
+  std::vector<double> upper(rows);
+  step.values(std::vector<double>{y[0], y[1], y[2], 0, 0, 0, y[0], y[1], y[2], 0, 0, 0}, value);
+  step.bounds(lower, upper);
+  for (std::size_t r = 0; r < rows; ++r) {
+    EXPECT_GE(value[r], lower[r]) << r;
+    EXPECT_LE(value[r], upper[r]) << r;
+  }
+}
+
+TEST_F(TakeoffPhase, TerrainBehindLimitsHowFarTheKneesMayGoBack) {
+  constexpr double kSole = 0.04;  // [m]
+  const ShankRange flat = shank_range(model_, task_.terrain, {0.0, kSole});
+  EXPECT_NEAR(flat.lower, -model_.config.shank_pitch_max, 0.01);
+  // Standing 25 cm below an edge that is 15 cm behind the ankle.
+  const PlanarTask drop = testing_support::task(model_, 0.30, -0.25);
+  const ShankRange close = shank_range(model_, drop.terrain, {0.27, -0.25 + kSole});
+  EXPECT_GT(close.lower, flat.lower + 0.1);
+  const model::PlanarVector<double> knee =
+      model_.dynamics.knee(model::LinkArray<double>{0.0, close.lower, 0.0, 0.0});
+  EXPECT_GE(-0.25 + kSole + knee.z,
+            drop.terrain.at(0.27 + knee.x).height + model_.config.knee_clearance);
+}
+
+}  // namespace
+}  // namespace hopscotch::planner
