@@ -43,15 +43,15 @@ void solve_recorded(const control::WrenchQpRecord& record, control::QpSolver& co
   solved = warm_solver.solve_warm(record.qp, record.map) == control::QpStatus::solved && solved;
   times.warm_ms.push_back(watch.milliseconds());
   if (!solved) ++times.failures;
-  const double error = std::abs(cold_solver.objective() - record.objective) /
-                       (1.0 + std::abs(record.objective));
+  const double error =
+      std::abs(cold_solver.objective() - record.objective) / (1.0 + std::abs(record.objective));
   times.objective_error = std::max(times.objective_error, error);
 }
 
 nlohmann::ordered_json bench_recorded(const BenchSetup& setup, const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
-  const auto records = control::decode_wrench_qps(
-      std::as_bytes(std::span<const char>(bytes.data(), bytes.size())));
+  const auto records =
+      control::decode_wrench_qps(std::as_bytes(std::span<const char>(bytes.data(), bytes.size())));
   if (!records) throw core::ConfigError(file.string() + ": is no file of recorded QPs");
   control::QpSolver cold_solver(setup.config.control.wrench_mpc.tolerances);
   control::QpSolver warm_solver(setup.config.control.wrench_mpc.tolerances);
@@ -73,14 +73,16 @@ nlohmann::ordered_json bench_mpc(const BenchSetup& setup, const std::filesystem:
   LockstepRun run(level_ground_run(setup, Eyes::truth));
   while (run.step({})) {
   }
-  return {{"n", run.samples().mpc_ms.size()}, {"solve_us", percentile_group(run.samples().mpc_ms, 1e3)}};
+  return {{"n", run.samples().mpc_ms.size()},
+          {"solve_us", percentile_group(run.samples().mpc_ms, 1e3)}};
 }
 
 nlohmann::ordered_json bench_tick(const BenchSetup& setup) {
   LockstepRun run(level_ground_run(setup, Eyes::truth));
   while (run.step({})) {
   }
-  return {{"n", run.samples().tick_ms.size()}, {"tick_us", percentile_group(run.samples().tick_ms, 1e3)}};
+  return {{"n", run.samples().tick_ms.size()},
+          {"tick_us", percentile_group(run.samples().tick_ms, 1e3)}};
 }
 
 }  // namespace hopscotch::apps

@@ -114,7 +114,8 @@ nlohmann::ordered_json bench_sim(const BenchSetup& setup) {
   return {{"n", 6},
           {"tick_of_everything_us", {{"truth", truth.step_us}, {"camera", camera.step_us}}},
           {"trials_per_minute", {{"truth", truth.per_minute}, {"camera", camera.per_minute}}},
-          {"real_time_factor", {{"truth", truth.real_time_factor}, {"camera", camera.real_time_factor}}},
+          {"real_time_factor",
+           {{"truth", truth.real_time_factor}, {"camera", camera.real_time_factor}}},
           {"memory_MiB", resident_mebibytes()}};
 }
 

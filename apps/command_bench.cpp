@@ -50,8 +50,9 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
 void print_people(const nlohmann::ordered_json& json) {
   for (const auto& [key, value] : json.items()) {
     if (value.is_object() && value.contains("p50")) {
-      std::printf("%-22s p50 %-10.4g p99 %-10.4g max %.4g\n", key.c_str(), value["p50"].get<double>(),
-                  value["p99"].get<double>(), value["max"].get<double>());
+      std::printf("%-22s p50 %-10.4g p99 %-10.4g max %.4g\n", key.c_str(),
+                  value["p50"].get<double>(), value["p99"].get<double>(),
+                  value["max"].get<double>());
     } else {
       std::printf("%-22s %s\n", key.c_str(),
                   value.is_string() ? value.get<std::string>().c_str() : value.dump().c_str());
@@ -62,7 +63,8 @@ void print_people(const nlohmann::ordered_json& json) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("bench", "The figures that the README quotes, measured here");
+  CLI::App* command =
+      app.add_subcommand("bench", "The figures that the README quotes, measured here");
   command->footer("Example: hopscotch bench planner --json");
   const auto options = std::make_shared<BenchOptions>();  // shared with the action below
   command->add_option("WHAT", options->what, "planner, mpc, perception, sim or tick")

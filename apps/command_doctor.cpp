@@ -35,9 +35,9 @@ namespace {
 struct Finding {
   std::string name;
   bool ok = false;
-  std::string found;
-  std::string fix;  ///< Command or action; empty when all is well.
-  std::string needed_for;
+  std::string found = "";
+  std::string fix = "";  ///< Command or action; empty when all is well.
+  std::string needed_for = "";
 };
 
 Finding check_configuration() {
@@ -57,7 +57,7 @@ Finding check_rendering() {
   Finding finding{.name = "offscreen rendering", .needed_for = "key frames of the report, --video"};
   try {
     const model::RobotParameters robot = model::RobotParameters::load(robot_file("hector"));
-    const sim::SceneRenderer renderer(sim::scene_mjcf(robot, {}), 64, 48);
+    const sim::SceneRenderer renderer(sim::scene_mjcf(robot, {}), 64, 48, sim::Quality::still);
     finding.ok = true;
     finding.found = "EGL without a surface";
   } catch (const std::exception& error) {

@@ -78,7 +78,8 @@ ExitStatus plan(const PlanOptions& options) {
     return ExitStatus::answer_is_no;
   }
   const core::JumpPlan& jump = result->value();
-  const PlanContext context{options.model, options.solver, Percentiles::of(solve_ms), options.repeat};
+  const PlanContext context{options.model, options.solver, Percentiles::of(solve_ms),
+                            options.repeat};
   if (!options.out.empty()) write_file_atomically(options.out, plan_trajectory_json(jump, context));
   if (options.json) {
     std::printf("%s", plan_summary_json(jump, context).c_str());
@@ -91,7 +92,8 @@ ExitStatus plan(const PlanOptions& options) {
 }  // namespace
 
 void add_plan_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("plan", "One jump from standing: trajectory, certificate, time");
+  CLI::App* command =
+      app.add_subcommand("plan", "One jump from standing: trajectory, certificate, time");
   command->footer("Example: hopscotch plan --distance 0.40 --height 0.10 --json");
   const auto options = std::make_shared<PlanOptions>();  // shared with the action below
   command->add_option("--distance", options->step.distance, "Ahead, sole to sole [m]")->required();
@@ -100,12 +102,15 @@ void add_plan_command(CLI::App& app, Action& action) {
   command->add_option("--lateral", options->step.lateral, "To the left [m]");
   command->add_option("--yaw", options->step.yaw, "Of the landing soles [rad]");
   command->add_option("--robot", options->robot, "Robot file")->capture_default_str();
-  command->add_option("--friction", options->friction, "Of the ground, instead of the configured one")
+  command
+      ->add_option("--friction", options->friction, "Of the ground, instead of the configured one")
       ->check(CLI::Range(0.05, 1.2));
   command->add_option("--model", options->model, "Formulation")
-      ->check(CLI::IsMember({"variable"}))->capture_default_str();
+      ->check(CLI::IsMember({"variable"}))
+      ->capture_default_str();
   command->add_option("--solver", options->solver, "Solver")
-      ->check(CLI::IsMember({"ipopt"}))->capture_default_str();
+      ->check(CLI::IsMember({"ipopt"}))
+      ->capture_default_str();
   command->add_option("--repeat", options->repeat, "Solve so often")->check(CLI::Range(1, 10000));
   command->add_flag("--cold", options->cold, "Each solve from the closed-form first guess");
   command->add_option("--config", options->config, "Tuning")->capture_default_str();

@@ -1,8 +1,10 @@
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -34,6 +36,7 @@ struct RunOptions {
   double pace = 0.0;
   bool video = false;
   bool view = false;
+  bool no_pictures = false;
   bool json = false;
 };
 
@@ -139,7 +142,11 @@ ExitStatus run(const RunOptions& options) {
   result.program = std::string(program_version());
   result.timing.real_time_factor = 1e3 * result.duration / watch.milliseconds();
   const RunFolder folder = recorder.finish(result);
-  draw_key_frames(folder);
+  if (!options.no_pictures) {
+    if (const auto missing = draw_key_frames(folder)) {
+      std::fprintf(stderr, "hopscotch: the report goes without pictures: %s\n", missing->c_str());
+    }
+  }
   write_report(folder.path);
   if (options.video) write_video(folder);
   say_result(result, folder, people);
@@ -171,6 +178,7 @@ void add_run_command(CLI::App& app, Action& action) {
   command->add_option("--pace", options->pace, "Times real time; without it as fast as it goes")
       ->check(CLI::Range(0.01, 100.0));
   command->add_flag("--video", options->video, "Write video.mp4");
+  command->add_flag("--no-pictures", options->no_pictures, "Report without key frames: faster");
   command->add_flag("--view", options->view, "Show it in a window, in real time");
   command->add_flag("--json", options->json, "Print result.json on standard output");
   command->callback([&action, options] { action = [options] { return run(*options); }; });

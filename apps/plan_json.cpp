@@ -83,7 +83,8 @@ std::string plan_summary_json(const core::JumpPlan& plan, const PlanContext& con
 std::string plan_trajectory_json(const core::JumpPlan& plan, const PlanContext& context) {
   Json json = summary(plan, context);
   json["knots"] = Json::array();
-  for (std::size_t i = 0; i < plan.knot_count; ++i) json["knots"].push_back(knot_json(plan.knots[i]));
+  for (std::size_t i = 0; i < plan.knot_count; ++i)
+    json["knots"].push_back(knot_json(plan.knots[i]));
   return json.dump(1) + "\n";
 }
 

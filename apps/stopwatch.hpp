@@ -6,8 +6,9 @@ namespace hopscotch::apps {
 
 /// Which time a Stopwatch reads.
 enum class TimeOf : clockid_t {
-  wall = CLOCK_MONOTONIC,           ///< What a user waits for.
-  thread = CLOCK_THREAD_CPUTIME_ID  ///< Processor time of this thread; what other loads leave alone.
+  wall = CLOCK_MONOTONIC,  ///< What a user waits for.
+  thread =
+      CLOCK_THREAD_CPUTIME_ID  ///< Processor time of this thread; what other loads leave alone.
 };
 
 /// Time since its construction.

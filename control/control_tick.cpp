@@ -183,7 +183,8 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
   const double scale = compliant ? config_.gains.compliant_scale : 1.0;
   command.q = planned.q;
   command.dq = planned.dq;
-  // The ground is late: wait in the touchdown posture instead of yielding to a ground that is not there.
+  // The ground is late: wait in the touchdown posture instead of yielding to a ground that is not
+  // there.
   if (phase() == RobotPhase::flight && time >= plan_.touchdown_time) command.dq.setZero();
   command.kp << scale * config_.gains.kp, scale * config_.gains.kp;
   command.kd << scale * config_.gains.kd, scale * config_.gains.kd;
@@ -238,8 +239,7 @@ void ControlTick::set_feed_forward(const core::RobotState& state,
       status_.wrenches = answer_.wrenches;
       command.tau += contact_torques(robot_, state, answer_.wrenches);
       return;
-    case RobotPhase::damp:
-      return;
+    case RobotPhase::damp: return;
   }
 }
 

@@ -57,8 +57,8 @@ class ControlTick {
   }
   /// True in the tick that began a phase: the last answer belongs to another one, solve at once.
   [[nodiscard]] bool phase_changed() const { return phase_changed_; }
-  /// How the robot will stand when the present plan has ended: its last posture on the feet's present
-  /// places, at rest. The next jump is planned from here.
+  /// How the robot will stand when the present plan has ended: its last posture on the feet's
+  /// present places, at rest. The next jump is planned from here.
   [[nodiscard]] core::RobotState rest_state() const noexcept;
   /// Fills the question for the state of the last tick; `reference.horizon` is an input.
   void question(MpcQuestion& out) const noexcept;

@@ -50,8 +50,7 @@ RobotPhase JumpSupervisor::update(const core::RobotState& state, const core::Jum
       if (plan_time >= plan.duration) phase_ = RobotPhase::stand;
       break;
     case RobotPhase::stand:
-    case RobotPhase::damp:
-      break;
+    case RobotPhase::damp: break;
   }
   return phase_;
 }

@@ -54,13 +54,29 @@ std::size_t knot_index(const core::JumpPlan& plan, double time) noexcept {
   return after == first ? 0 : static_cast<std::size_t>(after - first) - 1;
 }
 
+namespace {
+
+/// The knot at the end of step `i`, with the rates from before the ground stops the foot: the knot
+/// at touchdown holds those from after it. Accelerations are constant within a step.
+core::JumpKnot step_end(const core::JumpPlan& plan, std::size_t i) {
+  const core::JumpKnot& begin = plan.knots[i];
+  core::JumpKnot end = plan.knots[i + 1];
+  if (begin.phase != core::JumpPhase::flight || end.phase != core::JumpPhase::landing) return end;
+  const double per_step = 2.0 / begin.dt;
+  end.dq = per_step * (end.q - begin.q) - begin.dq;
+  end.v_WB = per_step * (end.p_WB - begin.p_WB) - begin.v_WB;
+  return end;
+}
+
+}  // namespace
+
 core::JumpKnot sample_plan(const core::JumpPlan& plan, double time) noexcept {
   const double t = std::clamp(time, 0.0, plan.duration);
   const std::size_t i = knot_index(plan, t);
   const core::JumpKnot& a = plan.knots[i];
   core::JumpKnot out = a;
   if (i + 1 >= plan.knot_count || a.dt <= 0.0) return out;
-  const core::JumpKnot& b = plan.knots[i + 1];
+  const core::JumpKnot b = step_end(plan, i);
   const double s = std::clamp((t - a.time) / a.dt, 0.0, 1.0);
   out.time = t;
   out.dt = a.dt;

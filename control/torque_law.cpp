@@ -1,12 +1,9 @@
 #include "control/torque_law.hpp"
 
+#include "model/gravity.hpp"
 #include "model/kinematics.hpp"
 
 namespace hopscotch::control {
-
-namespace {
-constexpr double kGravity = 9.80665;  // [m/s^2]
-}
 
 core::JointVector contact_torques(const model::RobotParameters& robot,
                                   const core::RobotState& state,
@@ -44,7 +41,7 @@ core::JointVector leg_weight_torques(const model::RobotParameters& robot,
       first_moment += joint.link.mass * (poses.X_BL[link] * com);
       const Eigen::Vector3d axis_B = poses.X_BL[link].linear() * joint.axis;
       const Eigen::Vector3d arm = first_moment - mass * poses.X_BL[link].translation();
-      tau[first + j] = axis_B.dot(arm.cross(kGravity * up_B));
+      tau[first + j] = axis_B.dot(arm.cross(model::kGravity * up_B));
     }
   }
   return tau;

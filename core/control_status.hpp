@@ -15,16 +15,11 @@ enum class RobotPhase : std::uint8_t { stand, takeoff, flight, landing, damp };
 
 constexpr std::string_view robot_phase_name(RobotPhase phase) {
   switch (phase) {
-    case RobotPhase::stand:
-      return "stand";
-    case RobotPhase::takeoff:
-      return "takeoff";
-    case RobotPhase::flight:
-      return "flight";
-    case RobotPhase::landing:
-      return "landing";
-    case RobotPhase::damp:
-      return "damp";
+    case RobotPhase::stand: return "stand";
+    case RobotPhase::takeoff: return "takeoff";
+    case RobotPhase::flight: return "flight";
+    case RobotPhase::landing: return "landing";
+    case RobotPhase::damp: return "damp";
   }
   return "damp";
 }

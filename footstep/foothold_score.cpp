@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 namespace hopscotch::footstep {
@@ -18,6 +19,12 @@ using core::TerrainCell;
 
 /// A third of a cell: no cell along a line is left out, edges are found to within it [m].
 constexpr double kAlongStep = 0.005;
+/// Window over which heights on either side of a small step are averaged: 3 cm.
+constexpr std::size_t kWindow = 6;
+/// Small steps are looked for up to here beyond the tips of the feet [m].
+constexpr double kStepGuard = 0.02;
+/// Higher steps end the tread and are found as its edges [m].
+constexpr double kStepSearch = 0.03;
 /// Lines along each foot: left rim, centre, right rim.
 constexpr int kLinesPerFoot = 3;
 
@@ -161,6 +168,60 @@ bool hits_knees(const FootholdConfig& config, const FootLines& lines, const Fitt
   return false;
 }
 
+/// Running sums of the heights below one foot, so that the mean over any window is one difference.
+struct RunningHeights {
+  std::vector<double> sum{0.0};
+  std::vector<int> known{0};
+
+  void add(double heights, int count) {
+    sum.push_back(sum.back() + heights);
+    known.push_back(known.back() + count);
+  }
+  /// Mean over [from, to); nothing where half of it is unknown.
+  [[nodiscard]] std::optional<double> mean(std::size_t from, std::size_t to) const {
+    const int count = known[to] - known[from];
+    if (2 * count < static_cast<int>(to - from) * kLinesPerFoot) return std::nullopt;
+    return (sum[to] - sum[from]) / count;
+  }
+};
+
+/// Heights along one foot, with the slope across it taken out; cells beyond an edge are left out.
+RunningHeights running_heights(const FootLines& lines, const FittedPlane& fit, std::size_t foot,
+                               double reach) {
+  RunningHeights heights;
+  for (double along = -reach; along <= reach; along += kAlongStep) {
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t line = foot * kLinesPerFoot; line < (foot + 1) * kLinesPerFoot; ++line) {
+      const TerrainCell* cell = lines.cell(line, along);
+      if (cell == nullptr || cell->state != CellState::observed) continue;
+      const double height = lines.height(*cell);
+      if (std::abs(height - fit.height(along, lines.offset(line))) > kStepSearch) continue;
+      sum += height - fit.plane(2) * lines.offset(line);
+      ++count;
+    }
+    heights.add(sum, count);
+  }
+  return heights;
+}
+
+/// Whether a step runs below a foot or right beside its tips that is too low to end the tread: a
+/// plane through both sides of it would pass for a slope. Means on either side of each place are
+/// compared, so that the noise of single cells does not count.
+bool stands_on_step(const FootholdConfig& config, const FootLines& lines, const FittedPlane& fit,
+                    double half_length) {
+  const double reach = half_length + kStepGuard + kWindow * kAlongStep;
+  for (std::size_t foot = 0; foot < core::kLegs; ++foot) {
+    const RunningHeights heights = running_heights(lines, fit, foot, reach);
+    for (std::size_t i = kWindow; i + kWindow < heights.sum.size(); ++i) {
+      const std::optional<double> before = heights.mean(i - kWindow, i);
+      const std::optional<double> behind = heights.mean(i, i + kWindow);
+      if (before && behind && std::abs(*behind - *before) > config.step_tolerance) return true;
+    }
+  }
+  return false;
+}
+
 double normal_cdf(double x) {
   return 0.5 * std::erfc(-x / std::numbers::sqrt2);
 }
@@ -207,6 +268,9 @@ Foothold score_foothold(const FootholdConfig& config, const StanceOnMap& stance,
   foothold.why = verdict(config, foothold);
   const bool room = foothold.heel_margin >= config.knee_room - stance.half_length;
   if (foothold.why == Reason::none && !room && hits_knees(config, lines, fit, stance.half_length)) {
+    foothold.why = Reason::no_safe_target;
+  }
+  if (foothold.why == Reason::none && stands_on_step(config, lines, fit, stance.half_length)) {
     foothold.why = Reason::no_safe_target;
   }
   return foothold;

@@ -25,6 +25,7 @@ FootholdConfig FootholdConfig::load(const ConfigReader& section) {
   config.flat_tolerance = section.number("flat_tolerance_m", Range::positive());
   config.flat_share = section.number("flat_share", Range::above(0.0, 1.0));
   config.edge_tolerance = section.number("edge_tolerance_m", Range::positive());
+  config.step_tolerance = section.number("step_tolerance_m", Range::positive());
   config.slope_max = section.number("slope_max_rad", Range::closed(0.0, 1.0));
   config.cross_slope_max = section.number("cross_slope_max_rad", Range::closed(0.0, 1.0));
   config.knee_room = section.number("knee_room_m", Range::not_negative());

@@ -13,6 +13,7 @@ struct FootholdConfig {
   double flat_tolerance = 0.0;    ///< Height about the fitted plane under the feet [m].
   double flat_share = 0.0;        ///< Share of the cells under the feet that must keep to it.
   double edge_tolerance = 0.0;    ///< Cells farther from the plane end the tread [m].
+  double step_tolerance = 0.0;    ///< Change of mean height below a foot within 3 cm [m].
   double slope_max = 0.0;         ///< Along the jump [rad].
   double cross_slope_max = 0.0;   ///< Across the jump [rad].
   double knee_room = 0.0;         ///< Free space behind the sole centre, where knees would hit [m].

@@ -53,6 +53,13 @@ std::optional<core::TerrainGap> gap_before(const core::OneStepTerrain& terrain, 
   return std::nullopt;
 }
 
+std::string too_high(const FootstepConfig& config, const Foothold& place) {
+  const double climb = config.reach.height.back();
+  return place.height > climb ? "it is " + cm(place.height) + " high, a jump climbs " + cm(climb)
+                              : "the way leads over something higher than " +
+                                    cm(std::max(0.0, place.height) + config.reach.hurdle_max);
+}
+
 Refusal too_far(const FootstepConfig& config, const core::OneStepTerrain& terrain,
                 const Foothold& place) {
   const std::string reach =
@@ -89,9 +96,8 @@ Refusal nothing_to_stand_on(const FootstepConfig& config, const core::OneStepTer
 Refusal explain_refusal(const FootstepConfig& config, const core::OneStepTerrain& terrain,
                         const std::vector<JudgedFoothold>& judged) {
   if (const auto place = first_unreached(judged, Reason::step_too_high)) {
-    return {Reason::step_too_high, "the way to the next safe place leads up " + cm(place->height) +
-                                       " or over a hurdle; a jump climbs " +
-                                       cm(config.reach.height.back())};
+    return {Reason::step_too_high, "the next safe place is " + cm(place->placement.x) + " away; " +
+                                       too_high(config, *place)};
   }
   if (const auto place = first_unreached(judged, Reason::out_of_reach)) {
     return too_far(config, terrain, *place);
@@ -119,9 +125,7 @@ Refusal explain_place(const FootstepConfig& config, const JudgedFoothold& judged
   switch (judged.why) {
     case Reason::terrain_unseen:
       return {judged.why, where + " or on the way there the ground has not been seen"};
-    case Reason::step_too_high:
-      return {judged.why, where + " the way leads up " + cm(place.height) +
-                              " or over a hurdle; a jump climbs " + cm(config.reach.height.back())};
+    case Reason::step_too_high: return {judged.why, where + ": " + too_high(config, place)};
     case Reason::step_too_low:
       return {judged.why, where + " the ground is " + cm(-place.height) +
                               " lower; a jump goes down " + cm(-config.reach.height.front())};

@@ -144,13 +144,14 @@ class PlanarDynamics {
   struct Coupling {
     std::array<std::array<double, kPlanarLinks>, kPlanarLinks> real{};
     std::array<std::array<double, kPlanarLinks>, kPlanarLinks> imaginary{};
+
+    /// Adds inertia and centrifugal forces of the links from `first` on, conjugate to their
+    /// pitches.
+    template <typename T>
+    void add_forces(std::size_t first, const LinkArray<T>& a, const LinkArray<T>& w,
+                    const LinkArray<T>& acceleration, LinkArray<T>& force) const;
   };
 
-  /// Adds inertia and centrifugal forces of the links from `first` on, conjugate to their pitches.
-  template <typename T>
-  static void add_inertia_forces(const Coupling& coupling, std::size_t first, const LinkArray<T>& a,
-                                 const LinkArray<T>& w, const LinkArray<T>& acceleration,
-                                 LinkArray<T>& force);
   /// Joint torques from the forces conjugate to the pitches, with armature and damping.
   template <typename T>
   [[nodiscard]] PlanarJoints<T> joint_torques(const LinkArray<T>& force, const LinkArray<T>& w,
@@ -201,21 +202,21 @@ T PlanarDynamics::centroidal_momentum(const LinkArray<T>& a, const LinkArray<T>&
 }
 
 template <typename T>
-void PlanarDynamics::add_inertia_forces(const Coupling& coupling, std::size_t first,
-                                        const LinkArray<T>& a, const LinkArray<T>& w,
-                                        const LinkArray<T>& acceleration, LinkArray<T>& force) {
+void PlanarDynamics::Coupling::add_forces(std::size_t first, const LinkArray<T>& a,
+                                          const LinkArray<T>& w, const LinkArray<T>& acceleration,
+                                          LinkArray<T>& force) const {
   using std::cos;
   using std::sin;
   LinkArray<T> square;
   for (std::size_t j = first; j < kPlanarLinks; ++j) square[j] = w[j] * w[j];
   for (std::size_t j = first; j < kPlanarLinks; ++j) {
-    force[j] = force[j] + coupling.real[j][j] * acceleration[j];
+    force[j] = force[j] + real[j][j] * acceleration[j];
     for (std::size_t k = j + 1; k < kPlanarLinks; ++k) {
       const T angle = a[j] - a[k];
       const T c = cos(angle);
       const T s = sin(angle);
-      const T inertia = coupling.real[j][k] * c - coupling.imaginary[j][k] * s;
-      const T centrifugal = coupling.real[j][k] * s + coupling.imaginary[j][k] * c;
+      const T inertia = real[j][k] * c - imaginary[j][k] * s;
+      const T centrifugal = real[j][k] * s + imaginary[j][k] * c;
       force[j] = force[j] + inertia * acceleration[k] + centrifugal * square[k];
       force[k] = force[k] + inertia * acceleration[j] - centrifugal * square[j];
     }
@@ -250,7 +251,7 @@ StanceLoads<T> PlanarDynamics::stance_loads(const LinkArray<T>& a, const LinkArr
     ground.z = ground.z - acceleration[j] * r.x - square * r.z;
     force[j] = (-kGravity) * r.x;
   }
-  add_inertia_forces(pinned_, kShank, a, w, acceleration, force);
+  pinned_.add_forces(kShank, a, w, acceleration, force);
   const double foot_weight_moment = chain_.foot.com_x * chain_.foot.mass * kGravity;
   const T moment = force[kShank] + force[kThigh] + force[kTrunk] - T(foot_weight_moment);
   return {joint_torques(force, w, acceleration), ground, moment};
@@ -260,7 +261,7 @@ template <typename T>
 PlanarJoints<T> PlanarDynamics::flight_torques(const LinkArray<T>& a, const LinkArray<T>& w,
                                                const LinkArray<T>& acceleration) const {
   LinkArray<T> force{T(0.0), T(0.0), T(0.0), T(0.0)};
-  add_inertia_forces(free_, kFoot, a, w, acceleration, force);
+  free_.add_forces(kFoot, a, w, acceleration, force);
   return joint_torques(force, w, acceleration);
 }
 
@@ -268,7 +269,7 @@ template <typename T>
 T PlanarDynamics::momentum_rate(const LinkArray<T>& a, const LinkArray<T>& w,
                                 const LinkArray<T>& acceleration) const {
   LinkArray<T> force{T(0.0), T(0.0), T(0.0), T(0.0)};
-  add_inertia_forces(free_, kFoot, a, w, acceleration, force);
+  free_.add_forces(kFoot, a, w, acceleration, force);
   return force[kFoot] + force[kShank] + force[kThigh] + force[kTrunk];
 }
 

@@ -61,8 +61,8 @@ std::optional<LinkArray<double>> links_from_com(const PlanarDynamics& dynamics,
   if (!(span > 0.0) || !(std::abs(cosine) <= 1.0)) return std::nullopt;
   const double direction = std::atan2(x, z);
   const double shank_direction = direction - std::acos(cosine);  // knee behind the line
-  const double thigh_direction = std::atan2(x - shank * std::sin(shank_direction),
-                                            z - shank * std::cos(shank_direction));
+  const double thigh_direction =
+      std::atan2(x - shank * std::sin(shank_direction), z - shank * std::cos(shank_direction));
   LinkArray<double> pitch = known;
   pitch[kShank] = shank_direction - std::atan2(e_shank.x, e_shank.z);
   pitch[kThigh] = thigh_direction - std::atan2(e_thigh.x, e_thigh.z);

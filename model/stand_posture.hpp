@@ -24,10 +24,10 @@ struct StandPosture {
 /// The whole robot in that posture, feet flat, zero yaw and roll.
 struct StandPose {
   core::JointVector q = core::JointVector::Constant(core::kNaN);  ///< Both legs alike [rad].
-  LinkArray<double> pitch{};          ///< Of the sagittal links; foot 0 [rad].
-  double trunk_height = core::kNaN;   ///< Trunk origin B above the sole [m].
-  double trunk_x = core::kNaN;        ///< Trunk origin B ahead of the sole centre F [m].
-  double trunk_pitch = core::kNaN;    ///< [rad]
+  LinkArray<double> pitch{};         ///< Of the sagittal links; foot 0 [rad].
+  double trunk_height = core::kNaN;  ///< Trunk origin B above the sole [m].
+  double trunk_x = core::kNaN;       ///< Trunk origin B ahead of the sole centre F [m].
+  double trunk_pitch = core::kNaN;   ///< [rad]
 };
 
 /// Pitches of shank and thigh that put the whole-body CoM at `com` from the ankle axis while foot

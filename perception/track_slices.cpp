@@ -34,8 +34,9 @@ std::vector<double> track_lines(const StancePose& stance) {
 }
 
 struct Crossing {
-  std::vector<double> heights;                              // of observed cells, relative to S
-  double upper = -std::numeric_limits<double>::infinity();  // of all cells that are bounded
+  std::vector<double> heights;  // of observed cells, relative to S
+  double upper_observed = -std::numeric_limits<double>::infinity();
+  double upper_hidden = -std::numeric_limits<double>::infinity();
   std::size_t unseen = 0;
 };
 
@@ -51,9 +52,12 @@ Crossing cross(const core::TerrainMap& map, const StancePose& stance, double x,
       ++crossing.unseen;
       continue;
     }
-    crossing.upper = std::max(crossing.upper, cell->upper - stance.p_WS.z());
+    const double upper = cell->upper - stance.p_WS.z();
     if (cell->state == CellState::observed) {
       crossing.heights.push_back(cell->height - stance.p_WS.z());
+      crossing.upper_observed = std::max(crossing.upper_observed, upper);
+    } else {
+      crossing.upper_hidden = std::max(crossing.upper_hidden, upper);
     }
   }
   return crossing;
@@ -66,7 +70,8 @@ Slice judge(const OneStepConfig& config, double x, std::size_t lines, Crossing& 
   const double share = static_cast<double>(heights.size()) / static_cast<double>(lines);
   if (share < config.support_share) {
     slice.kind = crossing.unseen > 0 ? SliceKind::unseen : SliceKind::hidden;
-    slice.upper = crossing.unseen > 0 ? std::numeric_limits<double>::infinity() : crossing.upper;
+    slice.upper = crossing.unseen > 0 ? std::numeric_limits<double>::infinity()
+                                      : std::max(crossing.upper_observed, crossing.upper_hidden);
     return slice;
   }
   std::sort(heights.begin(), heights.end());
@@ -74,7 +79,8 @@ Slice judge(const OneStepConfig& config, double x, std::size_t lines, Crossing& 
   for (const double height : heights) sum += height;
   slice.lower = heights.front();
   slice.mean = sum / static_cast<double>(heights.size());
-  slice.upper = crossing.upper;
+  // A ray that passed high over a single hidden cell must not lift a slice of observed ground.
+  slice.upper = crossing.upper_observed;
   const std::size_t drop = heights.size() > 4 * kOutliers ? kOutliers : 0;
   const double spread = heights[heights.size() - 1 - drop] - heights[drop];
   slice.kind = spread <= config.step_min ? SliceKind::level : SliceKind::broken;

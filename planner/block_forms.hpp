@@ -140,7 +140,8 @@ class StepBlock final : public ConstraintBlock {
 
   double values(std::span<const double> x, std::span<double> rows) const override {
     const double h = length(x);
-    for (int i = 0; i < Dof; ++i) rows[at(i)] = y1(x, i) - y0(x, i) - 0.5 * h * (v0(x, i) + v1(x, i));
+    for (int i = 0; i < Dof; ++i)
+      rows[at(i)] = y1(x, i) - y0(x, i) - 0.5 * h * (v0(x, i) + v1(x, i));
     std::array<double, kArgumentSize> middle;
     for (int i = 0; i < kArguments; ++i) middle[at(i)] = middle_value(x, h, i);
     std::array<double, kLawRows> out;

@@ -12,35 +12,67 @@ namespace hopscotch::planner {
 
 namespace {
 
-constexpr double kGrid = 1e-3;           // [s]
-constexpr double kFlightEnds = 0.2;      // share of the flight near the ground at either end
-constexpr double kTerrainScale = 0.1;    // [m]
+constexpr double kGrid = 1e-3;              // [s]
+constexpr double kFlightEnds = 0.2;         // share of the flight near the ground at either end
+constexpr double kTerrainScale = 0.1;       // [m]
 constexpr double kContactAllowance = 2e-3;  // sole and terrain touch: rounding of the spline [m]
 
 enum Check : std::size_t {
-  kHipTorque, kKneeTorque, kAnkleTorque,
-  kHipLine, kKneeLine, kAnkleLine,
-  kHipPower, kKneePower, kAnklePower,
-  kHipSpeed, kKneeSpeed, kAnkleSpeed,
-  kHipRange, kKneeRange, kAnkleRange,
-  kNormalForce, kFriction, kToePressure, kHeelPressure,
-  kToeClearance, kHeelClearance, kKneeClearance,
+  kHipTorque,
+  kKneeTorque,
+  kAnkleTorque,
+  kHipLine,
+  kKneeLine,
+  kAnkleLine,
+  kHipPower,
+  kKneePower,
+  kAnklePower,
+  kHipSpeed,
+  kKneeSpeed,
+  kAnkleSpeed,
+  kHipRange,
+  kKneeRange,
+  kAnkleRange,
+  kNormalForce,
+  kFriction,
+  kToePressure,
+  kHeelPressure,
+  kToeClearance,
+  kHeelClearance,
+  kKneeClearance,
   kChecks
 };
-constexpr std::array<std::string_view, kChecks> kNames{
-    "hip torque",      "knee torque",     "ankle torque",       "hip torque-speed line",
-    "knee torque-speed line", "ankle torque-speed line", "hip power", "knee power",
-    "ankle power",     "hip speed",       "knee speed",         "ankle speed",
-    "hip range",       "knee range",      "ankle range",        "normal force",
-    "friction",        "toe pressure",    "heel pressure",      "toe clearance",
-    "heel clearance",  "knee clearance"};
+constexpr std::array<std::string_view, kChecks> kNames{"hip torque",
+                                                       "knee torque",
+                                                       "ankle torque",
+                                                       "hip torque-speed line",
+                                                       "knee torque-speed line",
+                                                       "ankle torque-speed line",
+                                                       "hip power",
+                                                       "knee power",
+                                                       "ankle power",
+                                                       "hip speed",
+                                                       "knee speed",
+                                                       "ankle speed",
+                                                       "hip range",
+                                                       "knee range",
+                                                       "ankle range",
+                                                       "normal force",
+                                                       "friction",
+                                                       "toe pressure",
+                                                       "heel pressure",
+                                                       "toe clearance",
+                                                       "heel clearance",
+                                                       "knee clearance"};
 static_assert(kChecks <= core::Certificate::kMaxEntries);
 
 /// Collects the smallest margin of each check and the peaks.
 class Examiner {
  public:
   Examiner(const PlanarModel& model, const PlanarTask& task, const PlanarMotion& motion)
-      : model_(model), task_(task), motion_(motion),
+      : model_(model),
+        task_(task),
+        motion_(motion),
         limits_(motor_limits(model.robot, Reserves{1.0, 1.0, 1.0, 1.0})) {
     margin_.fill(std::numeric_limits<double>::infinity());
     time_.fill(core::kNaN);
@@ -106,8 +138,9 @@ class Examiner {
 
   void examine_ranges(const PlanarInstant& now, double time) {
     const model::PlanarJoints<double> q = model::joints_from_links(now.links.pitch);
-    const std::array<std::pair<core::Joint, double>, 3> joints{
-        {{core::Joint::hip_pitch, q.hip}, {core::Joint::knee, q.knee}, {core::Joint::ankle, q.ankle}}};
+    const std::array<std::pair<core::Joint, double>, 3> joints{{{core::Joint::hip_pitch, q.hip},
+                                                                {core::Joint::knee, q.knee},
+                                                                {core::Joint::ankle, q.ankle}}};
     for (std::size_t i = 0; i < joints.size(); ++i) {
       const model::JointRange range =
           model::joint_range(model_.robot, core::Leg::left, joints[i].first);
@@ -135,8 +168,8 @@ class Examiner {
     const double heel = above(now, dynamics.heel(now.links.pitch));
     const double knee = above(now, dynamics.knee(now.links.pitch)) - model_.robot.shank_radius;
     note_violation((-kContactAllowance - std::min({toe, heel, knee})) / kTerrainScale);
-    const double share = (time - motion_.liftoff_time) /
-                         (motion_.touchdown_time - motion_.liftoff_time);
+    const double share =
+        (time - motion_.liftoff_time) / (motion_.touchdown_time - motion_.liftoff_time);
     if (share < kFlightEnds || share > 1.0 - kFlightEnds) return;
     note(kToeClearance, toe / model_.config.clearance, time);
     note(kHeelClearance, heel / model_.config.clearance, time);
@@ -159,17 +192,13 @@ class Examiner {
   core::PlanPeaks peaks_{0.0, 0.0, 0.0, 0.0};
 };
 
-/// The motion at the end of `elapsed` when the torques planned for the middle of the step are held.
-PlanarInstant with_held_torque(const PlanarModel& model, const PlanarMotion& motion,
-                               const PlanarKnot& knot, const LinkState& links, double elapsed,
-                               const model::PlanarJoints<double>& tau) {
-  PlanarKnot held = knot;
-  held.links = links;
-  held.time = knot.time + elapsed;
-  held.acceleration = knot.phase == core::JumpPhase::flight
-                          ? flight_acceleration(model.dynamics, links, tau)
-                          : stance_acceleration(model.dynamics, links, tau);
-  return instant(model, motion, held, 0.0);
+/// The motion at time and state of `now` when the joints give these torques.
+PlanarInstant with_torque(const PlanarModel& model, const PlanarMotion& motion, PlanarKnot now,
+                          const model::PlanarJoints<double>& tau) {
+  now.acceleration = now.phase == core::JumpPhase::flight
+                         ? flight_acceleration(model.dynamics, now.links, tau)
+                         : stance_acceleration(model.dynamics, now.links, tau);
+  return instant(model, motion, now, 0.0);
 }
 
 double largest_speed(const model::RobotParameters& robot) {
@@ -192,17 +221,16 @@ void examine_step(const PlanarModel& model, const PlanarMotion& motion, const Pl
                   Examiner& examiner) {
   const model::PlanarJoints<double> tau = instant(model, motion, knot, 0.5 * knot.dt).tau;
   const int samples = std::max(1, static_cast<int>(std::ceil(knot.dt / kGrid)));
-  LinkState links = knot.links;
+  PlanarKnot now = knot;
   for (int i = 0; i <= samples; ++i) {
-    const double elapsed = knot.dt * i / samples;
-    examiner.examine(with_held_torque(model, motion, knot, links, elapsed, tau),
-                     knot.time + elapsed);
+    now.time = knot.time + knot.dt * i / samples;
+    examiner.examine(with_torque(model, motion, now, tau), now.time);
     if (i < samples) {
-      links = integrate(model.dynamics, knot.phase, links, tau, knot.dt / samples);
+      now.links = integrate(model.dynamics, knot.phase, now.links, tau, knot.dt / samples);
     }
   }
   const LinkState planned = instant(model, motion, knot, knot.dt).links;
-  examiner.note_violation(mismatch(links, planned, largest_speed(model.robot)));
+  examiner.note_violation(mismatch(now.links, planned, largest_speed(model.robot)));
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ struct Writer {
 
 void bound_knot(const PlanarModel& model, const ShankRange& shank, int y, int v, Writer& writer) {
   const PlannerConfig& config = model.config;
-  const model::JointRange knee = model::joint_range(model.robot, core::Leg::left, core::Joint::knee);
+  const model::JointRange knee =
+      model::joint_range(model.robot, core::Leg::left, core::Joint::knee);
   const double knee_speed = motor_limits(model.robot, config.reserves).knee.speed;
   writer.set(y + kShankPitch, shank.lower, shank.upper);
   writer.set(y + kKneeAngle, knee.lower + config.joint_margin, knee.upper - config.joint_margin);

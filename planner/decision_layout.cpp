@@ -19,8 +19,8 @@ std::array<int, 17> DecisionLayout::flight_step_variables(int k) const {
         if (knot > 0) {
           at[next++] = flight(knot) + block * kFlightDof + d;
         } else {
-          at[next++] = d < kStanceDof ? takeoff(steps_.takeoff) + block * kStanceDof + d
-                                      : kNoVariable;
+          at[next++] =
+              d < kStanceDof ? takeoff(steps_.takeoff) + block * kStanceDof + d : kNoVariable;
         }
       }
     }

@@ -109,8 +109,8 @@ SecondOrder<N> operator*(const SecondOrder<N>& a, const SecondOrder<N>& b) {
     const double ai = a.gradient[i];
     const double bi = b.gradient[i];
     for (std::size_t j = 0; j <= i; ++j, ++k) {
-      r.hessian[k] = b.value * a.hessian[k] + a.value * b.hessian[k] + ai * b.gradient[j] +
-                     bi * a.gradient[j];
+      r.hessian[k] =
+          b.value * a.hessian[k] + a.value * b.hessian[k] + ai * b.gradient[j] + bi * a.gradient[j];
     }
   }
   return r;
@@ -132,7 +132,9 @@ SecondOrder<N> compose(const SecondOrder<N>& a, double f, double f1, double f2) 
 // ---- both ----
 
 template <typename T>
-concept Differentiable = requires { T::kSize; };
+concept Differentiable = requires {
+  T::kSize;
+};
 
 template <Differentiable T>
 T operator+(const T& a, double b) {

@@ -9,11 +9,11 @@ namespace hopscotch::planner {
 /// form; local variables in this order.
 template <typename T>
 struct Ballistic {
-  T x;    ///< At lift-off [m].
-  T z;    ///< At lift-off [m].
-  T vx;   ///< At lift-off [m/s].
-  T vz;   ///< At lift-off [m/s].
-  T step; ///< dt^f [s].
+  T x;     ///< At lift-off [m].
+  T z;     ///< At lift-off [m].
+  T vx;    ///< At lift-off [m/s].
+  T vz;    ///< At lift-off [m/s].
+  T step;  ///< dt^f [s].
 
   /// At knot `k` after lift-off [m].
   [[nodiscard]] model::PlanarVector<T> com(double k) const {
@@ -91,9 +91,7 @@ struct MomentumLaw {
     rows[0] = dynamics.centroidal_momentum(a, w) - x[8];
     return T(0.0);
   }
-  void bounds(std::span<double> lower, std::span<double> upper) const {
-    lower[0] = upper[0] = 0.0;
-  }
+  void bounds(std::span<double> lower, std::span<double> upper) const { lower[0] = upper[0] = 0.0; }
   /// Linear in the rates and in L.
   static bool curved(int i, int j) { return i != 8 && j != 8 && !(i >= 4 && j >= 4); }
 };

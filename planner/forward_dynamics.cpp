@@ -21,8 +21,7 @@ Eigen::Vector<double, N> forces(const model::PlanarDynamics& dynamics, const Lin
         dynamics.stance_loads(links.pitch, links.rate, acceleration).tau;
     return {tau.hip, tau.knee, tau.ankle};
   } else {
-    const PlanarJoints<double> tau =
-        dynamics.flight_torques(links.pitch, links.rate, acceleration);
+    const PlanarJoints<double> tau = dynamics.flight_torques(links.pitch, links.rate, acceleration);
     return {tau.hip, tau.knee, tau.ankle,
             dynamics.momentum_rate(links.pitch, links.rate, acceleration)};
   }
@@ -57,13 +56,13 @@ LinkState advanced(const LinkState& from, const LinkArray<double>& rate,
 
 }  // namespace
 
-LinkArray<double> stance_acceleration(const model::PlanarDynamics& dynamics,
-                                      const LinkState& links, const PlanarJoints<double>& tau) {
+LinkArray<double> stance_acceleration(const model::PlanarDynamics& dynamics, const LinkState& links,
+                                      const PlanarJoints<double>& tau) {
   return solve<3>(dynamics, links, {tau.hip, tau.knee, tau.ankle});
 }
 
-LinkArray<double> flight_acceleration(const model::PlanarDynamics& dynamics,
-                                      const LinkState& links, const PlanarJoints<double>& tau) {
+LinkArray<double> flight_acceleration(const model::PlanarDynamics& dynamics, const LinkState& links,
+                                      const PlanarJoints<double>& tau) {
   return solve<4>(dynamics, links, {tau.hip, tau.knee, tau.ankle, 0.0});
 }
 

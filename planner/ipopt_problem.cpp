@@ -180,18 +180,14 @@ void set_options(const SolveOptions& options, Ipopt::IpoptApplication& applicati
 SolveStatus status_from(Ipopt::ApplicationReturnStatus status) {
   switch (status) {
     case Ipopt::Solve_Succeeded:
-    case Ipopt::Solved_To_Acceptable_Level:
-      return SolveStatus::solved;
-    case Ipopt::Maximum_Iterations_Exceeded:
-      return SolveStatus::iteration_limit;
+    case Ipopt::Solved_To_Acceptable_Level: return SolveStatus::solved;
+    case Ipopt::Maximum_Iterations_Exceeded: return SolveStatus::iteration_limit;
     case Ipopt::Infeasible_Problem_Detected:
     case Ipopt::Restoration_Failed:
     case Ipopt::Search_Direction_Becomes_Too_Small:
     case Ipopt::Not_Enough_Degrees_Of_Freedom:
-    case Ipopt::User_Requested_Stop:
-      return SolveStatus::infeasible;
-    default:
-      return SolveStatus::failed;
+    case Ipopt::User_Requested_Stop: return SolveStatus::infeasible;
+    default: return SolveStatus::failed;
   }
 }
 
@@ -199,10 +195,9 @@ double largest_violation(const NonlinearProgram& program, const DecisionBounds& 
                          const Eigen::VectorXd& x) {
   Eigen::VectorXd rows;
   program.values(x.data(), rows);
-  const double of_rows = std::max((program.row_lower() - rows).maxCoeff(),
-                                  (rows - program.row_upper()).maxCoeff());
-  const double of_bounds =
-      std::max((bounds.lower - x).maxCoeff(), (x - bounds.upper).maxCoeff());
+  const double of_rows =
+      std::max((program.row_lower() - rows).maxCoeff(), (rows - program.row_upper()).maxCoeff());
+  const double of_bounds = std::max((bounds.lower - x).maxCoeff(), (x - bounds.upper).maxCoeff());
   return std::max({0.0, of_rows, of_bounds});
 }
 

@@ -14,7 +14,8 @@ void add_touchdown(const PlanarModel& model, const PlanarTask& task, const Decis
                          ankle,
                          config.touchdown_speed_down,
                          config.touchdown_speed_along,
-                         config.rate_jump_cost};
+                         config.rate_jump_cost,
+                         config.touchdown_speed_down_min};
   const int last = layout.flight(layout.steps().flight);
   std::array<int, 15> at{};
   std::size_t next = 0;
@@ -33,8 +34,7 @@ void add_landing(const PlanarModel& model, const PlanarTask& task, const Decisio
   const PlannerConfig& config = model.config;
   const int steps = layout.steps().landing;
   const MotorRows motors{motor_limits(model.robot, config.reserves)};
-  const GroundRows ground =
-      ground_rows(model.dynamics.chain(), config, config.landing_cop_margin);
+  const GroundRows ground = ground_rows(model.dynamics.chain(), config, config.landing_cop_margin);
   const JointRows<kStanceDof> joints = joint_rows<kStanceDof>(model.robot, config);
   using Step = StepBlock<StanceLaw, kStanceDof, StepLength::free>;
   using Knot = KnotBlock<JointRows<kStanceDof>, 2 * kStanceDof>;

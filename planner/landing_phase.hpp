@@ -16,6 +16,7 @@ struct TouchdownLaw {
   double speed_down = 0.0;              ///< Largest of the sole [m/s].
   double speed_along = 0.0;             ///< [m/s]
   double jump_cost = 0.0;               ///< [s^2/rad^2]
+  double speed_down_min = 0.0;          ///< Smallest of the sole [m/s].
 
   template <typename T>
   T operator()(const std::array<T, 15>& x, std::array<T, kRows>& rows) const {
@@ -51,7 +52,7 @@ struct TouchdownLaw {
     lower[5] = -speed_along;
     upper[5] = speed_along;
     lower[6] = -speed_down;
-    upper[6] = 0.0;
+    upper[6] = -speed_down_min;
   }
 };
 

@@ -64,8 +64,7 @@ core::JumpKnot lift_knot(const PlanarModel& model, const PlanarMotion& motion,
   knot.phase = from.phase;
   knot.contact.fill(from.phase != core::JumpPhase::flight);
   knot.p_WB = plane.point(sum(now.ankle, model.dynamics.trunk_origin(a)));
-  knot.v_WB =
-      plane.vector(sum(now.ankle_velocity, model.dynamics.trunk_origin_velocity(a, w)));
+  knot.v_WB = plane.vector(sum(now.ankle_velocity, model.dynamics.trunk_origin_velocity(a, w)));
   knot.p_WG = plane.point(sum(now.ankle, model.dynamics.com(a)));
   knot.v_WG = plane.vector(sum(now.ankle_velocity, model.dynamics.com_velocity(a, w)));
   knot.rpy = {0.0, a[model::kTrunk], heading};

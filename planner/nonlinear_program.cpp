@@ -88,8 +88,7 @@ void NonlinearProgram::collect_patterns() {
   for (const Placed& placed : blocks_) {
     visit_jacobian(*placed.block, placed.rows,
                    [&](int, const SparseEntry& entry) { jacobian_.push_back(entry); });
-    visit_hessian(*placed.block,
-                  [&](int, const SparseEntry& entry) { hessian_.push_back(entry); });
+    visit_hessian(*placed.block, [&](int, const SparseEntry& entry) { hessian_.push_back(entry); });
   }
   sort_unique(jacobian_);
   sort_unique(hessian_);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <span>
+
 #include "model/planar_dynamics.hpp"
 #include "planner/planner_config.hpp"
 
@@ -13,8 +16,7 @@ struct StepObjective {
   double trunk_pitch = 0.0;                 ///< Of the final posture [rad].
 
   /// @param share Part of the phase that the step is; all shares of a phase add up to 1.
-  StepObjective(const CostWeights& per_phase, double share,
-                const model::LinkArray<double>& posture)
+  StepObjective(const CostWeights& per_phase, double share, const model::LinkArray<double>& posture)
       : weights(per_phase),
         reference(model::joints_from_links(posture)),
         trunk_pitch(posture[model::kTrunk]) {
@@ -38,8 +40,8 @@ struct StepObjective {
     T sum = weights.posture * (hip * hip + knee * knee + ankle * ankle);
     sum = sum + weights.rate * (dq.hip * dq.hip + dq.knee * dq.knee + dq.ankle * dq.ankle);
     if (weights.torque > 0.0) {
-      sum = sum +
-            weights.torque * (tau.hip * tau.hip + tau.knee * tau.knee + tau.ankle * tau.ankle);
+      sum =
+          sum + weights.torque * (tau.hip * tau.hip + tau.knee * tau.knee + tau.ankle * tau.ankle);
     }
     for (const T& each : acceleration) sum = sum + weights.acceleration * (each * each);
     return sum + weights.trunk_pitch * (trunk * trunk);

@@ -89,8 +89,7 @@ PlanarInstant instant(const PlanarModel& model, const PlanarMotion& motion, cons
   now.phase = knot.phase;
   for (std::size_t j = 0; j < model::kPlanarLinks; ++j) {
     const double u = knot.acceleration[j];
-    now.links.pitch[j] =
-        knot.links.pitch[j] + elapsed * (knot.links.rate[j] + 0.5 * elapsed * u);
+    now.links.pitch[j] = knot.links.pitch[j] + elapsed * (knot.links.rate[j] + 0.5 * elapsed * u);
     now.links.rate[j] = knot.links.rate[j] + elapsed * u;
   }
   const model::PlanarDynamics& dynamics = model.dynamics;

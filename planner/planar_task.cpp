@@ -54,7 +54,8 @@ LinkState projected(const core::RobotState& state, double heading) {
   return links;
 }
 
-std::optional<Refusal> check_target(const PlannerConfig& config, const core::LandingTarget& target) {
+std::optional<Refusal> check_target(const PlannerConfig& config,
+                                    const core::LandingTarget& target) {
   if (!std::isfinite(target.distance) || !std::isfinite(target.height) ||
       !std::isfinite(target.heading) || !target.p_WS.allFinite()) {
     return Refusal{Reason::target_malformed, "target or its frame is not a finite number"};
@@ -66,10 +67,9 @@ std::optional<Refusal> check_target(const PlannerConfig& config, const core::Lan
                             "|height| <= %.1f",
                             target.distance, target.height, kDistanceMax, kHeightMax)};
   }
-  const Eigen::Isometry3d X_SW =
-      (Eigen::Translation3d(target.p_WS) *
-       Eigen::AngleAxisd(target.heading, Eigen::Vector3d::UnitZ()))
-          .inverse();
+  const Eigen::Isometry3d X_SW = (Eigen::Translation3d(target.p_WS) *
+                                  Eigen::AngleAxisd(target.heading, Eigen::Vector3d::UnitZ()))
+                                     .inverse();
   const Eigen::Isometry3d left = X_SW * target.X_WF[0];
   const Eigen::Isometry3d right = X_SW * target.X_WF[1];
   const double lateral = 0.5 * (left.translation().y() + right.translation().y());
@@ -113,8 +113,7 @@ core::Result<PlanarTask> planar_task(const PlanarModel& model, const PlanRequest
   const core::LandingTarget& target = request.target;
   if (std::optional<Refusal> refusal = check_target(model.config, target)) return *refusal;
   if (std::optional<Refusal> refusal = check_start(model, request)) return *refusal;
-  const std::optional<model::StandPose> end =
-      model::stand_pose(model.robot, request.final_posture);
+  const std::optional<model::StandPose> end = model::stand_pose(model.robot, request.final_posture);
   if (!end) return Refusal{Reason::out_of_reach, "the legs cannot reach the final posture"};
   const double half = 0.5 * (model.robot.toe + model.robot.heel);
   core::Result<SmoothTerrain> terrain = SmoothTerrain::from_profile(

@@ -49,6 +49,8 @@ void load_limits(const ConfigReader& section, PlannerConfig& config) {
   config.foot_pitch_max = section.number("foot_pitch_max_rad", Range::above(0.0, 1.5));
   config.touchdown_speed_down =
       section.number("touchdown_speed_down_max_mps", Range::closed(0.05, 3.0));
+  config.touchdown_speed_down_min = section.number("touchdown_speed_down_min_mps",
+                                                   Range::closed(0.0, config.touchdown_speed_down));
   config.touchdown_speed_along =
       section.number("touchdown_speed_along_max_mps", Range::closed(0.0, 3.0));
   config.touchdown_foot_rate =

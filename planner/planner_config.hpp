@@ -35,31 +35,33 @@ struct PlannerConfig {
   double landing_first_share = 0.0;  ///< First landing step as a share of dt^l [-].
   double friction = 0.0;             ///< mu of the ground [-].
   Reserves reserves;
-  double normal_force_min = 0.0;     ///< Of both feet while they stand [N].
-  double normal_force_max = 0.0;     ///< Of both feet [N].
-  double takeoff_cop_margin = 0.0;   ///< Kept from toe and heel [m].
-  double landing_cop_margin = 0.0;   ///< Kept from toe and heel [m].
-  double joint_margin = 0.0;         ///< Kept from the ends of the joint ranges [rad].
-  double shank_pitch_max = 0.0;      ///< Of |pitch|: the knees must not scrape the ground [rad].
-  double trunk_pitch_min = 0.0;      ///< [rad]
-  double trunk_pitch_max = 0.0;      ///< [rad]
-  double foot_pitch_max = 0.0;       ///< Of |pitch| in flight [rad].
-  double clearance = 0.0;            ///< Of toe and heel in mid-flight over level ground [m].
-  double clearance_per_height = 0.0; ///< Lost per metre of |height| of the target [m/m].
-  double clearance_min = 0.0;        ///< [m]
-  double knee_clearance = 0.0;       ///< Of the knee axis from the terrain [m].
-  double touchdown_speed_down = 0.0; ///< Largest of the sole [m/s].
-  double touchdown_speed_along = 0.0;///< Largest |speed| of the sole [m/s].
-  double touchdown_foot_rate = 0.0;  ///< Largest |pitch rate| of the foot at touchdown [rad/s].
+  double normal_force_min = 0.0;      ///< Of both feet while they stand [N].
+  double normal_force_max = 0.0;      ///< Of both feet [N].
+  double takeoff_cop_margin = 0.0;    ///< Kept from toe and heel [m].
+  double landing_cop_margin = 0.0;    ///< Kept from toe and heel [m].
+  double joint_margin = 0.0;          ///< Kept from the ends of the joint ranges [rad].
+  double shank_pitch_max = 0.0;       ///< Of |pitch|: the knees must not scrape the ground [rad].
+  double trunk_pitch_min = 0.0;       ///< [rad]
+  double trunk_pitch_max = 0.0;       ///< [rad]
+  double foot_pitch_max = 0.0;        ///< Of |pitch| in flight [rad].
+  double clearance = 0.0;             ///< Of toe and heel in mid-flight over level ground [m].
+  double clearance_per_height = 0.0;  ///< Lost per metre of |height| of the target [m/m].
+  double clearance_min = 0.0;         ///< [m]
+  double knee_clearance = 0.0;        ///< Of the knee axis from the terrain [m].
+  double touchdown_speed_down = 0.0;  ///< Largest of the sole [m/s].
+  /// Smallest of the sole [m/s]: a foot that is not moving down misses ground that is a little low.
+  double touchdown_speed_down_min = 0.0;
+  double touchdown_speed_along = 0.0;  ///< Largest |speed| of the sole [m/s].
+  double touchdown_foot_rate = 0.0;    ///< Largest |pitch rate| of the foot at touchdown [rad/s].
   CostWeights takeoff_cost;
   CostWeights flight_cost;
   CostWeights landing_cost;
-  double rate_jump_cost = 0.0;       ///< On the jump of link rates at touchdown^2 [s^2/rad^2].
-  double smoothness_cost = 0.0;      ///< On the change of angular acceleration between steps^2.
-  double lateral_tolerance = 0.0;    ///< Targets farther beside the jump line are refused [m].
-  double yaw_tolerance = 0.0;        ///< Targets turned more are refused [rad].
+  double rate_jump_cost = 0.0;     ///< On the jump of link rates at touchdown^2 [s^2/rad^2].
+  double smoothness_cost = 0.0;    ///< On the change of angular acceleration between steps^2.
+  double lateral_tolerance = 0.0;  ///< Targets farther beside the jump line are refused [m].
+  double yaw_tolerance = 0.0;      ///< Targets turned more are refused [rad].
   int iterations_max = 0;
-  double tolerance = 0.0;            ///< Of the scaled optimality conditions.
+  double tolerance = 0.0;  ///< Of the scaled optimality conditions.
 
   /// Length of takeoff step `k`: from first to last in equal changes, since crouching is slow and
   /// the end of the push is fast [s].

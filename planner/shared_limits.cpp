@@ -63,8 +63,7 @@ GroundRows ground_rows(const model::PlanarChain& chain, const PlannerConfig& con
 
 template <int Dof>
 JointRows<Dof> joint_rows(const model::RobotParameters& robot, const PlannerConfig& config) {
-  const model::JointRange hip =
-      model::joint_range(robot, core::Leg::left, core::Joint::hip_pitch);
+  const model::JointRange hip = model::joint_range(robot, core::Leg::left, core::Joint::hip_pitch);
   const model::JointRange ankle = model::joint_range(robot, core::Leg::left, core::Joint::ankle);
   const MotorLimits limits = motor_limits(robot, config.reserves);
   return {.hip_lower = hip.lower + config.joint_margin,

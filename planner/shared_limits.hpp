@@ -56,8 +56,8 @@ struct MotorRows {
   static void write_motor(const MotorLimit& limit, const T& torque, const T& speed, const T& half,
                           T* rows) {
     rows[0] = torque * (1.0 / limit.torque);
-    const T middle = rows[0] * ((limit.speed - limit.corner_speed) / limit.speed) +
-                     speed * (1.0 / limit.speed);
+    const T middle =
+        rows[0] * ((limit.speed - limit.corner_speed) / limit.speed) + speed * (1.0 / limit.speed);
     rows[1] = middle - half * (1.0 / limit.speed);
     rows[2] = middle + half * (1.0 / limit.speed);
     rows[3] = torque * speed * (1.0 / limit.power);
@@ -119,7 +119,8 @@ struct JointRows {
       foot_rate = x[kRowCount + kFootPitch];
     }
     const model::LinkArray<T> a = links_from_coordinates(x[0], x[1], x[2], foot);
-    const model::LinkArray<T> w = links_from_coordinates(x[kRowCount], x[kRowCount + 1], x[kRowCount + 2], foot_rate);
+    const model::LinkArray<T> w =
+        links_from_coordinates(x[kRowCount], x[kRowCount + 1], x[kRowCount + 2], foot_rate);
     const model::PlanarJoints<T> speed = model::motor_rates_from_links(w);
     rows[0] = model::joints_from_links(a).hip;
     rows[1] = speed.hip * (1.0 / hip_speed);

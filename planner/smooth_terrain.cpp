@@ -77,9 +77,9 @@ TerrainPoint SmoothTerrain::at(double x) const {
   point.height = (r * r * r * p0 + (3.0 * u * u * u - 6.0 * u * u + 4.0) * p1 +
                   (3.0 * r * r * r - 6.0 * r * r + 4.0) * p2 + u * u * u * p3) /
                  6.0;
-  point.slope = (-r * r * p0 + (3.0 * u * u - 4.0 * u) * p1 + (4.0 * r - 3.0 * r * r) * p2 +
-                 u * u * p3) /
-                (2.0 * h);
+  point.slope =
+      (-r * r * p0 + (3.0 * u * u - 4.0 * u) * p1 + (4.0 * r - 3.0 * r * r) * p2 + u * u * p3) /
+      (2.0 * h);
   point.curvature = (r * p0 + (3.0 * u - 2.0) * p1 + (3.0 * r - 2.0) * p2 + u * p3) / (h * h);
   return point;
 }

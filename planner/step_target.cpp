@@ -6,8 +6,8 @@ namespace hopscotch::planner {
 
 namespace {
 
-constexpr double kEdgeAheadOfStart = 0.12;   // [m]
-constexpr double kEdgeBeforeTarget = 0.12;   // [m]
+constexpr double kEdgeAheadOfStart = 0.12;  // [m]
+constexpr double kEdgeBeforeTarget = 0.12;  // [m]
 
 }  // namespace
 
@@ -26,8 +26,7 @@ core::LandingTarget step_target(const StepRequest& request, const model::RobotPa
       Eigen::Translation3d(request.distance, request.lateral, request.height) *
       Eigen::AngleAxisd(request.yaw, Eigen::Vector3d::UnitZ());
   for (const core::Leg leg : core::kAllLegs) {
-    const double y =
-        model::leg_poses(robot, leg, core::LegVector::Zero()).X_BF.translation().y();
+    const double y = model::leg_poses(robot, leg, core::LegVector::Zero()).X_BF.translation().y();
     target.X_WF[core::index(leg)] = X_WT * Eigen::Translation3d(0.0, y, 0.0);
   }
   for (int i = 0; i < core::TerrainProfile::kSamples; ++i) {

@@ -44,17 +44,16 @@ void add_takeoff(const PlanarModel& model, const PlanarTask& task, const Decisio
   const PlannerConfig& config = model.config;
   const int steps = layout.steps().takeoff;
   const MotorRows motors{motor_limits(model.robot, config.reserves)};
-  const GroundRows ground =
-      ground_rows(model.dynamics.chain(), config, config.takeoff_cop_margin);
+  const GroundRows ground = ground_rows(model.dynamics.chain(), config, config.takeoff_cop_margin);
   const JointRows<kStanceDof> joints = joint_rows<kStanceDof>(model.robot, config);
   using Step = StepBlock<StanceLaw, kStanceDof, StepLength::fixed>;
   using Knot = KnotBlock<JointRows<kStanceDof>, 2 * kStanceDof>;
   for (int k = 0; k < steps; ++k) {
     const std::array<int, 12> ends = layout.takeoff_step_variables(k);
     const double step = config.takeoff_step(k);
-    const StanceLaw law{model.dynamics, motors, ground,
-                        StepObjective(config.takeoff_cost, step / config.takeoff_time(),
-                                      task.final_posture)};
+    const StanceLaw law{
+        model.dynamics, motors, ground,
+        StepObjective(config.takeoff_cost, step / config.takeoff_time(), task.final_posture)};
     blocks.push_back(std::make_unique<Step>(law, ends, step));
     std::array<int, 6> after{};
     std::copy(ends.begin() + 6, ends.end(), after.begin());

@@ -14,17 +14,17 @@ namespace {
 using Vector = model::PlanarVector<double>;
 
 // Typical of solved jumps; the solver only needs the neighbourhood.
-constexpr double kPushTime = 0.30;           // [s]
-constexpr double kLiftoffComAhead = 0.055;   // of the ankle [m]
-constexpr double kLiftoffComHeight = 0.455;  // above the ankle [m]
-constexpr double kLandingComAhead = -0.055;  // of the ankle [m]
-constexpr double kLandingComHeight = 0.36;   // above the ankle [m]
-constexpr double kFlightTime = 0.26;         // on level ground [s]
+constexpr double kPushTime = 0.30;             // [s]
+constexpr double kLiftoffComAhead = 0.055;     // of the ankle [m]
+constexpr double kLiftoffComHeight = 0.455;    // above the ankle [m]
+constexpr double kLandingComAhead = -0.055;    // of the ankle [m]
+constexpr double kLandingComHeight = 0.36;     // above the ankle [m]
+constexpr double kFlightTime = 0.26;           // on level ground [s]
 constexpr double kFlightTimePerHeight = 0.25;  // [s/m]
-constexpr double kLiftoffPitch = 0.35;       // of the trunk [rad]
-constexpr double kPitchPerHeight = -2.0;     // [rad/m]
-constexpr double kLandingPitchShare = 0.5;   // of the lift-off pitch
-constexpr double kComReach = 0.98;           // of the leg's longest span
+constexpr double kLiftoffPitch = 0.35;         // of the trunk [rad]
+constexpr double kPitchPerHeight = -2.0;       // [rad/m]
+constexpr double kLandingPitchShare = 0.5;     // of the lift-off pitch
+constexpr double kComReach = 0.98;             // of the leg's longest span
 
 /// A sagittal posture by where the CoM is from the ankle axis.
 struct Pose {
@@ -46,8 +46,7 @@ double ease(double s, double end_rate) {
 model::LinkArray<double> links(const PlanarModel& model, Pose pose) {
   const Pose nominal{{0.0, 0.33}, pose.trunk};
   for (int attempt = 0; attempt < 20; ++attempt) {
-    const auto found =
-        model::links_from_com(model.dynamics, pose.com, {0.0, 0.0, 0.0, pose.trunk});
+    const auto found = model::links_from_com(model.dynamics, pose.com, {0.0, 0.0, 0.0, pose.trunk});
     if (found) return *found;
     pose = blend(nominal, pose, 0.9);
   }
@@ -132,10 +131,9 @@ std::vector<model::LinkArray<double>> flight_links(const PlanarModel& model, con
     const double along = ease(share, 0.0);
     const double up = ease(std::min(1.0, 1.6 * share), 0.0);
     const double wave = std::sin(std::numbers::pi * share);
-    const Vector ankle{
-        s.start_ankle.x + along * (s.target_ankle.x - s.start_ankle.x),
-        s.start_ankle.z + (task.height > 0.0 ? up * rise : along * task.height) +
-            1.2 * task.clearance * wave * wave};
+    const Vector ankle{s.start_ankle.x + along * (s.target_ankle.x - s.start_ankle.x),
+                       s.start_ankle.z + (task.height > 0.0 ? up * rise : along * task.height) +
+                           1.2 * task.clearance * wave * wave};
     const double trunk = s.liftoff.trunk + share * (s.touchdown.trunk - s.liftoff.trunk);
     out.push_back(links(model, {{com.x - ankle.x, com.z - ankle.z}, trunk}));
   }
@@ -186,15 +184,15 @@ Eigen::VectorXd kinematic_guess(const PlanarModel& model, const PlanarTask& task
   for (int k = 0; k <= steps.takeoff; ++k) {
     const auto& a = phases.takeoff[static_cast<std::size_t>(k)];
     put(a, layout.takeoff(k), kStanceDof, x);
-    put(rate(phases.takeoff, k, model.config.takeoff_step(std::min(k, steps.takeoff - 1))), layout.takeoff(k) + kStanceDof,
-        kStanceDof, x);
+    put(rate(phases.takeoff, k, model.config.takeoff_step(std::min(k, steps.takeoff - 1))),
+        layout.takeoff(k) + kStanceDof, kStanceDof, x);
   }
   for (int k = 1; k <= steps.flight; ++k) {
     put(phases.flight[static_cast<std::size_t>(k)], layout.flight(k), kFlightDof, x);
     put(rate(phases.flight, k, flight_step), layout.flight(k) + kFlightDof, kFlightDof, x);
   }
-  put(rate(phases.landing, 0, landing_step * model.config.landing_share(0)), layout.touchdown_rates(),
-      kStanceDof, x);
+  put(rate(phases.landing, 0, landing_step * model.config.landing_share(0)),
+      layout.touchdown_rates(), kStanceDof, x);
   for (int k = 1; k <= steps.landing; ++k) {
     put(phases.landing[static_cast<std::size_t>(k)], layout.landing(k), kStanceDof, x);
     const double step = landing_step * model.config.landing_share(std::min(k, steps.landing - 1));
@@ -206,8 +204,7 @@ Eigen::VectorXd kinematic_guess(const PlanarModel& model, const PlanarTask& task
   x(layout.liftoff_velocity() + 1) = s.parabola.velocity.z;
   const std::size_t last = phases.takeoff.size() - 1;
   x(layout.momentum()) = model.dynamics.centroidal_momentum(
-      phases.takeoff[last],
-      rate(phases.takeoff, steps.takeoff, model.config.takeoff_last_step));
+      phases.takeoff[last], rate(phases.takeoff, steps.takeoff, model.config.takeoff_last_step));
   x(layout.flight_step()) = flight_step;
   x(layout.landing_step()) = landing_step;
   return x;

@@ -78,8 +78,7 @@ TEST_F(CommandLine, ABrokenScenarioNamesFileLineAndRuleAndWritesNothing) {
                                   "goal: {x_m: 1.0}\n"
                                   "frction: 0.5\n");
   const fs::path out = folder_ / "out";
-  const Answer answer =
-      call("run " + scenario.string() + " --state truth --out " + out.string());
+  const Answer answer = call("run " + scenario.string() + " --state truth --out " + out.string());
   EXPECT_EQ(answer.status, 2);
   EXPECT_NE(answer.output.find("broken.yaml:5"), std::string::npos) << answer.output;
   EXPECT_NE(answer.output.find("frction"), std::string::npos);

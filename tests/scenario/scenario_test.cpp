@@ -40,8 +40,7 @@ class ShippedScenario : public ::testing::TestWithParam<const char*> {};
 TEST_P(ShippedScenario, IsCrossedWithTheCamera) {
   const std::string file = std::string(kConfig) + "scenarios/" + GetParam() + ".yaml";
   // Any seed must do; this one is none of those that the campaign uses.
-  const RunResult result =
-      result_of(request_of(sim::Scenario::load(file), Eyes::camera, 4711));
+  const RunResult result = result_of(request_of(sim::Scenario::load(file), Eyes::camera, 4711));
   EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
   EXPECT_EQ(result.falls, 0);
   for (const JumpResult& jump : result.jumps) {

@@ -103,7 +103,8 @@ TEST_F(ControlTickTest, TakeoffAddsOnlyTheDeviationOfTheMpc) {
   step(control);
   control.offer(plan_);
   step(control);
-  MpcAnswer answer{.stamp = state_.stamp, .status = MpcStatus::solved, .form = MpcForm::error_state};
+  MpcAnswer answer{
+      .stamp = state_.stamp, .status = MpcStatus::solved, .form = MpcForm::error_state};
   answer.planned[0].force = {0.0, 0.0, 70.0};
   answer.wrenches[0].force = {0.0, 0.0, 90.0};
   answer.planned[1] = answer.wrenches[1] = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
@@ -131,8 +132,8 @@ TEST_F(ControlTickTest, StandingTorqueHoldsTheWeight) {
   sunk.q += h * (core::JointVector() << 0, 0, 1, -2, 1, 0, 0, 1, -2, 1).finished();
   const auto soles = model::sole_poses(robot_, state_);
   sunk.p_WB -= model::sole_poses(robot_, sunk)[0].translation() - soles[0].translation();
-  const double drop = model::composite_body(robot_, state_).p_WG.z() -
-                      model::composite_body(robot_, sunk).p_WG.z();
+  const double drop =
+      model::composite_body(robot_, state_).p_WG.z() - model::composite_body(robot_, sunk).p_WG.z();
   EXPECT_NEAR(command.tau.dot(sunk.q - state_.q), -weight * drop, 1e-4 * weight * h);
 }
 

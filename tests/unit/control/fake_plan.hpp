@@ -4,9 +4,9 @@
 
 namespace hopscotch::control::testing {
 
-/// A plan with the shape of a jump and simple numbers: 0.2 s takeoff in steps of 20 ms, 0.1 s flight
-/// in steps of 25 ms, 0.12 s landing in steps of 30 ms. Everything scalar moves with constant
-/// acceleration from rest, so that interpolation can be checked in closed form.
+/// A plan with the shape of a jump and simple numbers: 0.2 s takeoff in steps of 20 ms, 0.1 s
+/// flight in steps of 25 ms, 0.12 s landing in steps of 30 ms. Everything scalar moves with
+/// constant acceleration from rest, so that interpolation can be checked in closed form.
 inline core::JumpPlan jump_shaped_plan(const core::JointVector& q0) {
   constexpr double kAcceleration = 2.0;
   core::JumpPlan plan;

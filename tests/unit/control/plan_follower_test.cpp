@@ -39,6 +39,15 @@ TEST(PlanFollower, TorqueDoesNotLeakFromOnePhaseIntoTheNext) {
   EXPECT_DOUBLE_EQ(sample_plan(kPlan, 0.2999).tau[2], 0.0);
 }
 
+TEST(PlanFollower, RatesBeforeTouchdownAreThoseOfTheFlight) {
+  core::JumpPlan plan = kPlan;
+  for (std::size_t i = 0; i < plan.knot_count; ++i) {  // the ground stops the joints at once
+    if (plan.knots[i].phase == core::JumpPhase::landing) plan.knots[i].dq.setZero();
+  }
+  EXPECT_NEAR(sample_plan(plan, 0.2999).dq[0], 0.02 * 0.2999, 1e-6);
+  EXPECT_DOUBLE_EQ(sample_plan(plan, 0.3).dq[0], 0.0);
+}
+
 TEST(PlanFollower, TimeIsClampedToThePlan) {
   EXPECT_DOUBLE_EQ(sample_plan(kPlan, -1.0).p_WG.x(), 0.0);
   EXPECT_NEAR(sample_plan(kPlan, 9.0).p_WG.x(), 0.42 * 0.42, 1e-12);

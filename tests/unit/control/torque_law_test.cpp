@@ -29,8 +29,8 @@ core::RobotState random_state(std::mt19937& random) {
 double leg_potential(const model::RobotParameters& robot, const core::RobotState& state) {
   double energy = 0.0;
   for (const core::Leg leg : core::kAllLegs) {
-    const model::LegPoses poses = model::leg_poses(
-        robot, leg, state.q.segment<core::kJointsPerLeg>(core::leg_offset(leg)));
+    const model::LegPoses poses =
+        model::leg_poses(robot, leg, state.q.segment<core::kJointsPerLeg>(core::leg_offset(leg)));
     for (std::size_t j = 0; j < core::kJointsPerLeg; ++j) {
       Eigen::Vector3d com = robot.joints[j].link.com;
       if (leg == core::Leg::right) com.y() = -com.y();

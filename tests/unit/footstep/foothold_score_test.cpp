@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "tests/unit/footstep/known_course.hpp"
 
@@ -82,6 +83,29 @@ TEST_F(FootholdScoreTest, OneFootOverTheSideIsNotSupported) {
 TEST_F(FootholdScoreTest, FeetAcrossAStepAreNotSupported) {
   const KnownCourse known(Course{.blocks = {{-1.0, 0.4, 0.0}, {0.4, 3.0, 0.05}}});
   EXPECT_FALSE(score(known, {.x = 0.4}).supported);
+}
+
+TEST_F(FootholdScoreTest, LowStepUnderTheFeetIsNotTakenForASlope) {
+  for (const double step : {0.02, -0.02, 0.014}) {
+    const KnownCourse known(Course{.blocks = {{-1.0, 0.45, 0.0}, {0.45, 3.0, step}}});
+    for (const double x : {0.38, 0.40, 0.45, 0.50, 0.53}) {
+      EXPECT_NE(score(known, {.x = x}).why, Reason::none) << "step " << step << " at " << x;
+    }
+    EXPECT_EQ(score(known, {.x = 0.33}).why, Reason::none) << step;
+    EXPECT_EQ(score(known, {.x = 0.58}).why, Reason::none) << step;
+  }
+}
+
+TEST_F(FootholdScoreTest, NoiseOfSingleCellsIsNoStep) {
+  KnownCourse known(Course{.blocks = {{-1.0, 3.0, 0.0}}});
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise(0.0F, 0.003F);
+  for (core::TerrainCell& cell : known.map.cells) cell.height += noise(random);
+  int refused = 0;
+  for (double x = 0.2; x < 1.0; x += 0.01) {
+    refused += score(known, {.x = x}).why == Reason::none ? 0 : 1;
+  }
+  EXPECT_LE(refused, 2) << "of 80 places on level ground";
 }
 
 TEST_F(FootholdScoreTest, SlopeIsBearableUpToItsLimit) {

@@ -60,8 +60,8 @@ Eigen::Matrix3d mass_matrix(const PlanarDynamics& dynamics, const LinkArray<doub
 
 struct ReferencePose {
   const char* robot;
-  double ankle, knee, hip;            // [deg]
-  double aa, ak, ah, kk, kh, hh;      // mass matrix [kg·m^2]
+  double ankle, knee, hip;              // [deg]
+  double aa, ak, ah, kk, kh, hh;        // mass matrix [kg·m^2]
   double tau_ankle, tau_knee, tau_hip;  // holding torques [N·m]
 };
 
@@ -163,8 +163,12 @@ TEST_F(PlanarMotions, GroundForceIsTheRateOfMomentumPlusWeight) {
     const LinkArray<double> w = flat(random(8.0));
     const LinkArray<double> u = flat(random(100.0));
     const StanceLoads<double> loads = dynamics_.stance_loads(a, w, u);
-    const auto px = [&](const auto& p, const auto& v) { return mass * dynamics_.com_velocity(p, v).x; };
-    const auto pz = [&](const auto& p, const auto& v) { return mass * dynamics_.com_velocity(p, v).z; };
+    const auto px = [&](const auto& p, const auto& v) {
+      return mass * dynamics_.com_velocity(p, v).x;
+    };
+    const auto pz = [&](const auto& p, const auto& v) {
+      return mass * dynamics_.com_velocity(p, v).z;
+    };
     EXPECT_NEAR(loads.force.x, rate(px, a, w, u), kDifferenceError * mass);
     EXPECT_NEAR(loads.force.z - mass * kGravity, rate(pz, a, w, u), kDifferenceError * mass);
   }

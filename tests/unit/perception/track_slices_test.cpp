@@ -46,6 +46,14 @@ TEST_F(TrackSlicesTest, NothingSeenIsUnboundedAndRaysBoundIt) {
   EXPECT_TRUE(std::isnan(slice_at(slices, 0.65).mean));
 }
 
+TEST_F(TrackSlicesTest, LooselyBoundedCellDoesNotLiftObservedGround) {
+  set_stretch(map_, -0.5, 2.0, {.height = 0.1F, .upper = 0.1F, .state = CellState::observed});
+  set_stretch(map_, 0.49, 0.51, {.upper = 0.5F, .state = CellState::occluded}, 0.10, 0.12);
+  const Slice slice = slice_at(cut(), 0.5);
+  EXPECT_EQ(slice.kind, SliceKind::level);
+  EXPECT_NEAR(slice.upper, 0.0, 1e-6);
+}
+
 TEST_F(TrackSlicesTest, OneTrackHigherThanTheOtherIsBroken) {
   set_stretch(map_, -0.5, 2.0, {.height = 0.1F, .upper = 0.1F, .state = CellState::observed});
   set_stretch(map_, 0.4, 0.6, {.height = 0.2F, .upper = 0.2F, .state = CellState::observed}, 0.0,

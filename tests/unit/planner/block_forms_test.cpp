@@ -37,10 +37,10 @@ TEST(StepBlock, ShowsTheLawTheMiddleOfAStepOfConstantAcceleration) {
   const std::vector<double> x{1.0, 2.0, 1.0 + 0.4 + 0.12, 2.0 + 1.2};
   std::vector<double> rows(5);
   block.values(x, rows);
-  EXPECT_NEAR(rows[0], 0.0, kRounding);                    // the trapezoid holds
-  EXPECT_NEAR(rows[1], 1.0 + 0.2 + 0.03, kRounding);       // y at 0.1
-  EXPECT_NEAR(rows[2], (2.0 + 0.6) * 6.0, kRounding);      // v at 0.1 times u
-  EXPECT_NEAR(rows[3], 6.0, kRounding);                    // u
+  EXPECT_NEAR(rows[0], 0.0, kRounding);                // the trapezoid holds
+  EXPECT_NEAR(rows[1], 1.0 + 0.2 + 0.03, kRounding);   // y at 0.1
+  EXPECT_NEAR(rows[2], (2.0 + 0.6) * 6.0, kRounding);  // v at 0.1 times u
+  EXPECT_NEAR(rows[3], 6.0, kRounding);                // u
   EXPECT_NEAR(rows[4], 0.2 * (1.0 + 0.2 + 0.03), kRounding);
 }
 

@@ -30,8 +30,8 @@ TEST(Certificate, OfASolvedJumpHasNoNegativeMargin) {
     names.insert(certified.certificate.entries[i].name);
   }
   EXPECT_EQ(names.size(), certified.certificate.count);
-  for (const char* name : {"knee torque", "knee power", "friction", "toe pressure",
-                           "normal force", "toe clearance"}) {
+  for (const char* name :
+       {"knee torque", "knee power", "friction", "toe pressure", "normal force", "toe clearance"}) {
     EXPECT_TRUE(names.contains(name)) << name;
   }
 }

@@ -28,8 +28,17 @@ TEST_F(FlightPhase, LiftoffTakesOverPositionVelocityAndMomentum) {
   const model::LinkArray<double> w = links_from_coordinates(6.0, 7.0, -2.0, 0.0);
   const model::PlanarVector<double> com = model_.dynamics.com(a);
   const model::PlanarVector<double> velocity = model_.dynamics.com_velocity(a, w);
-  const std::array<double, 11> x{-0.7, -1.5, 0.3, 6.0, 7.0, -2.0, ankle.x + com.x, ankle.z + com.z,
-                                 velocity.x, velocity.z, model_.dynamics.centroidal_momentum(a, w)};
+  const std::array<double, 11> x{-0.7,
+                                 -1.5,
+                                 0.3,
+                                 6.0,
+                                 7.0,
+                                 -2.0,
+                                 ankle.x + com.x,
+                                 ankle.z + com.z,
+                                 velocity.x,
+                                 velocity.z,
+                                 model_.dynamics.centroidal_momentum(a, w)};
   std::array<double, LiftoffLaw::kRows> rows{};
   std::array<double, LiftoffLaw::kRows> lower{};
   std::array<double, LiftoffLaw::kRows> upper{};
@@ -45,8 +54,8 @@ TEST_F(FlightPhase, ClearanceIsMeasuredFromTheTerrainBelowEachPoint) {
   const ClearanceLaw law{model_.dynamics, task_.terrain, 3.0, 0.05, 0.03};
   const model::LinkArray<double> a = links_from_coordinates(-0.8, -1.6, 0.2, 0.1);
   const Ballistic<double> flight{0.05, 0.45, 1.0, 1.3, 0.02};
-  const std::array<double, 9> x{-0.8, -1.6, 0.2, 0.1, flight.x, flight.z, flight.vx, flight.vz,
-                                flight.step};
+  const std::array<double, 9> x{-0.8,     -1.6,      0.2,       0.1,        flight.x,
+                                flight.z, flight.vx, flight.vz, flight.step};
   std::array<double, ClearanceLaw::kRows> rows{};
   law(x, rows);
   const model::PlanarVector<double> centre = flight.com(3.0);

@@ -25,9 +25,21 @@ TEST_F(LandingPhase, TouchdownWithoutImpactSatisfiesTheLawAndCostsNothing) {
   const TouchdownLaw law{model_.dynamics, kKnots, ankle, 1.2, 0.8, 2.0};
   const double vz = velocity.z + model::kGravity * kTime;
   const std::array<double, 15> x{
-      -1.0, -1.9, -0.2, 1.0, -4.0, -2.0, 0.0, 1.0, -4.0, -2.0,
+      -1.0,
+      -1.9,
+      -0.2,
+      1.0,
+      -4.0,
+      -2.0,
+      0.0,
+      1.0,
+      -4.0,
+      -2.0,
       ankle.x + com.x - velocity.x * kTime,
-      ankle.z + com.z - vz * kTime + 0.5 * model::kGravity * kTime * kTime, velocity.x, vz, kStep};
+      ankle.z + com.z - vz * kTime + 0.5 * model::kGravity * kTime * kTime,
+      velocity.x,
+      vz,
+      kStep};
   std::array<double, TouchdownLaw::kRows> rows{};
   std::array<double, TouchdownLaw::kRows> lower{};
   std::array<double, TouchdownLaw::kRows> upper{};

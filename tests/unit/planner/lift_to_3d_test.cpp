@@ -17,7 +17,9 @@ constexpr double kHeading = 0.8;
 constexpr double kExact = 1e-9;
 constexpr double kSolved = 1e-3;
 
-Eigen::Vector3d plan_origin() { return {1.0, -0.5, 0.2}; }
+Eigen::Vector3d plan_origin() {
+  return {1.0, -0.5, 0.2};
+}
 
 core::LandingTarget target(double heading) {
   core::LandingTarget target;
@@ -113,7 +115,9 @@ TEST(LiftTo3d, FeetInFlightGetNoForce) {
     const bool flight = knot.phase == core::JumpPhase::flight;
     for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
       EXPECT_EQ(knot.contact[leg], !flight);
-      if (flight) EXPECT_EQ(knot.wrenches[leg].force.norm(), 0.0);
+      if (flight) {
+        EXPECT_EQ(knot.wrenches[leg].force.norm(), 0.0);
+      }
     }
   }
 }

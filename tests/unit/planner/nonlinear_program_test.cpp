@@ -27,16 +27,16 @@ struct SmallLaw {
 /// Two blocks that share variable 1; the second has a constant zero in front.
 NonlinearProgram program() {
   std::vector<std::unique_ptr<ConstraintBlock>> blocks;
-  blocks.push_back(
-      std::make_unique<KnotBlock<SmallLaw, 2>>(SmallLaw{}, std::array<int, 2>{0, 1}));
-  blocks.push_back(
-      std::make_unique<KnotBlock<SmallLaw, 2>>(SmallLaw{}, std::array<int, 2>{1, 2}));
+  blocks.push_back(std::make_unique<KnotBlock<SmallLaw, 2>>(SmallLaw{}, std::array<int, 2>{0, 1}));
+  blocks.push_back(std::make_unique<KnotBlock<SmallLaw, 2>>(SmallLaw{}, std::array<int, 2>{1, 2}));
   blocks.push_back(
       std::make_unique<KnotBlock<SmallLaw, 2>>(SmallLaw{}, std::array<int, 2>{kNoVariable, 2}));
   return {3, std::move(blocks)};
 }
 
-TEST(NonlinearProgram, LeavesOutUnboundedRows) { EXPECT_EQ(program().rows(), 3); }
+TEST(NonlinearProgram, LeavesOutUnboundedRows) {
+  EXPECT_EQ(program().rows(), 3);
+}
 
 TEST(NonlinearProgram, AddsUpCostsAndStacksRows) {
   const double x[3] = {1.0, 2.0, 3.0};

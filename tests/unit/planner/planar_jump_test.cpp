@@ -20,8 +20,7 @@ PlanarVector<double> com(const SolvedJump& jump, const PlanarInstant& now) {
 }
 
 PlanarVector<double> com_velocity(const SolvedJump& jump, const PlanarInstant& now) {
-  const PlanarVector<double> v =
-      jump.model.dynamics.com_velocity(now.links.pitch, now.links.rate);
+  const PlanarVector<double> v = jump.model.dynamics.com_velocity(now.links.pitch, now.links.rate);
   return {now.ankle_velocity.x + v.x, now.ankle_velocity.z + v.z};
 }
 
@@ -82,16 +81,15 @@ TEST(PlanarJump, FlightKeepsTheAngularMomentum) {
 
 TEST(PlanarJump, FootTouchesDownFlatOnTheTarget) {
   const SolvedJump& jump = level_jump();
-  const std::size_t touchdown = static_cast<std::size_t>(jump.model.config.steps.takeoff +
-                                                         jump.model.config.steps.flight);
+  const std::size_t touchdown =
+      static_cast<std::size_t>(jump.model.config.steps.takeoff + jump.model.config.steps.flight);
   const PlanarKnot& last = jump.motion.knots[touchdown - 1];
   const PlanarInstant end = instant(jump.model, jump.motion, last, last.dt);
   EXPECT_NEAR(end.ankle.x, jump.motion.target_ankle.x, kSolved);
   EXPECT_NEAR(end.ankle.z, jump.motion.target_ankle.z, kSolved);
   EXPECT_NEAR(end.links.pitch[model::kFoot], 0.0, kSolved);
   EXPECT_LE(-end.ankle_velocity.z, jump.model.config.touchdown_speed_down + kSolved);
-  const PlanarInstant begin =
-      instant(jump.model, jump.motion, jump.motion.knots[touchdown], 0.0);
+  const PlanarInstant begin = instant(jump.model, jump.motion, jump.motion.knots[touchdown], 0.0);
   const PlanarVector<double> v0 = com_velocity(jump, end);
   const PlanarVector<double> v1 = com_velocity(jump, begin);
   EXPECT_NEAR(v0.x, v1.x, kSolved);

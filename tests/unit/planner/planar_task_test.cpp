@@ -111,11 +111,10 @@ INSTANTIATE_TEST_SUITE_P(
                    core::Reason::bad_sensor_value},
         BadRequest{"elsewhere", [](PlanRequest& r) { r.start.p_WB.x() += 0.5; },
                    core::Reason::target_malformed},
-        BadRequest{"impossible posture",
-                   [](PlanRequest& r) { r.final_posture.com_height = 0.9; },
+        BadRequest{"impossible posture", [](PlanRequest& r) { r.final_posture.com_height = 0.9; },
                    core::Reason::out_of_reach}),
-    [](const testing::TestParamInfo<BadRequest>& info) {
-      std::string name = info.param.name;
+    [](const testing::TestParamInfo<BadRequest>& bad) {
+      std::string name = bad.param.name;
       for (char& c : name) c = c == ' ' ? '_' : c;
       return name;
     });

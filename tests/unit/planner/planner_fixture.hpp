@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <random>
@@ -47,7 +49,9 @@ inline PlanRequest request(double distance, double height) {
   return request;
 }
 
-inline PlanarModel shipped_model() { return {hector(), shipped_config()}; }
+inline PlanarModel shipped_model() {
+  return {hector(), shipped_config()};
+}
 
 inline PlanarTask task(const PlanarModel& model, double distance, double height) {
   return *planar_task(model, request(distance, height));
@@ -60,63 +64,71 @@ struct DerivativeError {
   double curvature = 0.0;
 };
 
-inline DerivativeError derivative_error(const ConstraintBlock& block, const std::vector<double>& x) {
+/// A block's rows and slopes at one point, with the gradient of 0.7 cost + multipliers . rows.
+struct BlockPoint {
+  double cost = 0.0;
+  std::vector<double> rows;
+  std::vector<double> cost_gradient;
+  std::vector<double> jacobian;  ///< Row by row.
+  std::vector<double> lagrangian_gradient;
+};
+inline constexpr double kCostFactor = 0.7;
+
+inline std::vector<double> test_multipliers(const ConstraintBlock& block) {
+  std::vector<double> multipliers;
+  for (int r = 0; r < block.rows(); ++r) multipliers.push_back(0.3 + 0.1 * (r % 7));
+  return multipliers;
+}
+
+inline BlockPoint evaluate(const ConstraintBlock& block, const std::vector<double>& x) {
+  const std::vector<double> multipliers = test_multipliers(block);
+  BlockPoint point;
+  point.rows.assign(multipliers.size(), 0.0);
+  point.cost = block.values(x, point.rows);
+  point.cost_gradient.assign(x.size(), 0.0);
+  point.jacobian.assign(x.size() * multipliers.size(), 0.0);
+  block.slopes(x, point.cost_gradient, point.jacobian);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    double sum = kCostFactor * point.cost_gradient[i];
+    for (std::size_t r = 0; r < multipliers.size(); ++r) {
+      sum += multipliers[r] * point.jacobian[r * x.size() + i];
+    }
+    point.lagrangian_gradient.push_back(sum);
+  }
+  return point;
+}
+
+inline void note_error(double exact, double difference, double& worst) {
+  worst = std::max(worst, std::abs(exact - difference) / (1.0 + std::abs(difference)));
+}
+
+inline DerivativeError derivative_error(const ConstraintBlock& block,
+                                        const std::vector<double>& x) {
   constexpr double kStep = 1e-6;
   const std::size_t n = x.size();
-  const std::size_t m = static_cast<std::size_t>(block.rows());
-  std::vector<double> multipliers(m);
-  for (std::size_t r = 0; r < m; ++r) multipliers[r] = 0.3 + 0.1 * static_cast<double>(r % 7);
-  constexpr double kCostFactor = 0.7;
-  // Gradient of cost_factor cost + multipliers . rows, and the pieces it is made of.
-  struct Point {
-    double cost;
-    std::vector<double> rows, cost_gradient, jacobian;
-    Eigen::VectorXd lagrangian_gradient;
-  };
-  const auto evaluate = [&](const std::vector<double>& at) {
-    Point p;
-    p.rows.assign(m, 0.0);
-    p.cost = block.values(at, p.rows);
-    p.cost_gradient.assign(n, 0.0);
-    p.jacobian.assign(n * m, 0.0);
-    block.slopes(at, p.cost_gradient, p.jacobian);
-    p.lagrangian_gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
-    for (std::size_t i = 0; i < n; ++i) {
-      double sum = kCostFactor * p.cost_gradient[i];
-      for (std::size_t r = 0; r < m; ++r) sum += multipliers[r] * p.jacobian[r * n + i];
-      p.lagrangian_gradient(static_cast<Eigen::Index>(i)) = sum;
-    }
-    return p;
-  };
-  const Point here = evaluate(x);
+  const BlockPoint here = evaluate(block, x);
   std::vector<double> hessian(n * n, 0.0);
-  block.curvature(x, kCostFactor, multipliers, hessian);
+  block.curvature(x, kCostFactor, test_multipliers(block), hessian);
   DerivativeError error;
   for (std::size_t i = 0; i < n; ++i) {
-    std::vector<double> ahead = x;
-    std::vector<double> behind = x;
-    ahead[i] += kStep;
-    behind[i] -= kStep;
-    const Point a = evaluate(ahead);
-    const Point b = evaluate(behind);
-    const auto note = [](double exact, double difference, double& worst) {
-      worst = std::max(worst, std::abs(exact - difference) / (1.0 + std::abs(difference)));
-    };
-    note(here.cost_gradient[i], (a.cost - b.cost) / (2.0 * kStep), error.slopes);
-    for (std::size_t r = 0; r < m; ++r) {
-      const double exact =
-          block.depends(static_cast<int>(r), static_cast<int>(i)) ? here.jacobian[r * n + i] : 0.0;
-      note(exact, (a.rows[r] - b.rows[r]) / (2.0 * kStep), error.slopes);
+    std::vector<double> shifted = x;
+    shifted[i] = x[i] + kStep;
+    const BlockPoint a = evaluate(block, shifted);
+    shifted[i] = x[i] - kStep;
+    const BlockPoint b = evaluate(block, shifted);
+    note_error(here.cost_gradient[i], (a.cost - b.cost) / (2.0 * kStep), error.slopes);
+    for (std::size_t r = 0; r < here.rows.size(); ++r) {
+      const bool depends = block.depends(static_cast<int>(r), static_cast<int>(i));
+      note_error(depends ? here.jacobian[r * n + i] : 0.0, (a.rows[r] - b.rows[r]) / (2.0 * kStep),
+                 error.slopes);
     }
     for (std::size_t j = 0; j < n; ++j) {
       const std::size_t low = std::max(i, j);
       const std::size_t high = std::min(i, j);
-      const double exact = block.curved(static_cast<int>(low), static_cast<int>(high))
-                               ? hessian[low * n + high]
-                               : 0.0;
-      const Eigen::Index at = static_cast<Eigen::Index>(j);
-      note(exact, (a.lagrangian_gradient(at) - b.lagrangian_gradient(at)) / (2.0 * kStep),
-           error.curvature);
+      const bool curved = block.curved(static_cast<int>(low), static_cast<int>(high));
+      note_error(curved ? hessian[low * n + high] : 0.0,
+                 (a.lagrangian_gradient[j] - b.lagrangian_gradient[j]) / (2.0 * kStep),
+                 error.curvature);
     }
   }
   return error;

@@ -109,8 +109,8 @@ TEST(GroundRows, BoundFrictionOnBothSides) {
 }
 
 TEST(JointRows, HaveExactDerivativesAndNoCurvature) {
-  const KnotBlock<JointRows<kFlightDof>, 8> block(joint_rows<kFlightDof>(hector(), shipped_config()),
-                                                  {0, 1, 2, 3, 4, 5, 6, 7});
+  const KnotBlock<JointRows<kFlightDof>, 8> block(
+      joint_rows<kFlightDof>(hector(), shipped_config()), {0, 1, 2, 3, 4, 5, 6, 7});
   const testing_support::DerivativeError error =
       testing_support::derivative_error(block, testing_support::random_point(8, 4));
   EXPECT_LT(error.slopes, testing_support::kDerivativeTolerance);

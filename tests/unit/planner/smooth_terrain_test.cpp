@@ -20,7 +20,9 @@ core::TerrainProfile step_profile() {
   return profile;
 }
 
-SmoothTerrain step() { return *SmoothTerrain::from_profile(step_profile(), kStart, kTarget); }
+SmoothTerrain step() {
+  return *SmoothTerrain::from_profile(step_profile(), kStart, kTarget);
+}
 
 TEST(SmoothTerrain, HasContinuousDerivativesThatMatchDifferences) {
   const SmoothTerrain terrain = step();

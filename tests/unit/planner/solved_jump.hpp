@@ -24,10 +24,10 @@ inline SolvedJump solve_jump(double distance, double height) {
   add_flight(model, goal, layout, blocks);
   add_landing(model, goal, layout, blocks);
   const NonlinearProgram program(layout.size(), std::move(blocks));
-  const SolveOutcome outcome = solve_with_ipopt(
-      program, decision_bounds(model, goal, layout), decision_sizes(layout),
-      {kinematic_guess(model, goal, layout)},
-      {model.config.iterations_max, model.config.tolerance});
+  const SolveOutcome outcome =
+      solve_with_ipopt(program, decision_bounds(model, goal, layout), decision_sizes(layout),
+                       {kinematic_guess(model, goal, layout)},
+                       {model.config.iterations_max, model.config.tolerance});
   return {model, goal, outcome, motion_from_decision(model, goal, layout, outcome.x)};
 }
 

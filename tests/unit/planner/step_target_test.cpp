@@ -20,8 +20,10 @@ TEST(StepTarget, PutsTheSolesBesideTheTargetPoint) {
 TEST(StepTarget, ChangesHeightAtTheEdge) {
   const core::LandingTarget target =
       step_target({.distance = 0.4, .height = 0.1, .edge = 0.28}, testing_support::hector());
-  EXPECT_EQ(target.profile.upper[static_cast<std::size_t>(core::TerrainProfile::sample(0.25))], 0.0);
-  EXPECT_EQ(target.profile.upper[static_cast<std::size_t>(core::TerrainProfile::sample(0.31))], 0.1);
+  EXPECT_EQ(target.profile.upper[static_cast<std::size_t>(core::TerrainProfile::sample(0.25))],
+            0.0);
+  EXPECT_EQ(target.profile.upper[static_cast<std::size_t>(core::TerrainProfile::sample(0.31))],
+            0.1);
 }
 
 TEST(StepTarget, EdgeDefaultsToTheNearEndOfADropAndTheFarEndOfARise) {

@@ -20,8 +20,8 @@ TEST_F(WarmStart, BeginsAtTheStartAndEndsInTheFinalPosture) {
 
 TEST_F(WarmStart, FliesAParabolaOntoTheTarget) {
   const PlanarMotion motion = motion_from_decision(model_, task_, layout_, guess_);
-  const PlanarKnot& last = motion.knots[static_cast<std::size_t>(layout_.steps().takeoff +
-                                                                 layout_.steps().flight - 1)];
+  const PlanarKnot& last =
+      motion.knots[static_cast<std::size_t>(layout_.steps().takeoff + layout_.steps().flight - 1)];
   const PlanarInstant touchdown = instant(model_, motion, last, last.dt);
   constexpr double kRoughly = 0.05;  // accelerations come from differences
   EXPECT_NEAR(touchdown.ankle.x, motion.target_ankle.x, kRoughly);
