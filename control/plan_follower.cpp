@@ -10,14 +10,17 @@ namespace {
 /// linearisation loses conditioning.
 constexpr double kShortestStep = 0.002;  // [s]
 
-template <typename Vector>
-Vector hermite(const Vector& p0, const Vector& v0, const Vector& p1, const Vector& v1, double dt,
-               double s) {
-  const double s2 = s * s;
-  const double s3 = s2 * s;
-  return (2.0 * s3 - 3.0 * s2 + 1.0) * p0 + (s3 - 2.0 * s2 + s) * dt * v0 +
-         (3.0 * s2 - 2.0 * s3) * p1 + (s3 - s2) * dt * v1;
-}
+/// Weights of both ends' values and rates in a cubic Hermite polynomial.
+struct HermiteWeights {
+  double value_begin, rate_begin, value_end, rate_end;
+
+  /// @param s Share of the step that has passed. @param dt Its length [s].
+  HermiteWeights(double s, double dt)
+      : value_begin(1.0 + s * s * (2.0 * s - 3.0)),
+        rate_begin(dt * s * (1.0 - s) * (1.0 - s)),
+        value_end(s * s * (3.0 - 2.0 * s)),
+        rate_end(dt * s * s * (s - 1.0)) {}
+};
 
 /// The step whose mid-point lies on the other side of `time` than that of step `i`, within its
 /// phase; `i` itself at the ends of the phase.
@@ -80,9 +83,12 @@ core::JumpKnot sample_plan(const core::JumpPlan& plan, double time) noexcept {
   const double s = std::clamp((t - a.time) / a.dt, 0.0, 1.0);
   out.time = t;
   out.dt = a.dt;
-  out.p_WB = hermite(a.p_WB, a.v_WB, b.p_WB, b.v_WB, a.dt, s);
-  out.p_WG = hermite(a.p_WG, a.v_WG, b.p_WG, b.v_WG, a.dt, s);
-  out.q = hermite(a.q, a.dq, b.q, b.dq, a.dt, s);
+  const HermiteWeights w(s, a.dt);
+  out.p_WB =
+      w.value_begin * a.p_WB + w.rate_begin * a.v_WB + w.value_end * b.p_WB + w.rate_end * b.v_WB;
+  out.p_WG =
+      w.value_begin * a.p_WG + w.rate_begin * a.v_WG + w.value_end * b.p_WG + w.rate_end * b.v_WG;
+  out.q = w.value_begin * a.q + w.rate_begin * a.dq + w.value_end * b.q + w.rate_end * b.dq;
   out.rpy = (1.0 - s) * a.rpy + s * b.rpy;
   out.v_WB = (1.0 - s) * a.v_WB + s * b.v_WB;
   out.w_WB = (1.0 - s) * a.w_WB + s * b.w_WB;

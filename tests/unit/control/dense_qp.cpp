@@ -146,8 +146,10 @@ Real step_length(const DenseVector& value, const DenseVector& change) {
 }  // namespace
 
 Real DenseQp::objective(const DenseVector& z) const {
-  const DenseVector Hz = H * z;
-  return 0.5L * z.dot(Hz) + g.dot(z) + constant;
+  const DenseVector slope = 0.5L * (H * z) + g;
+  Real sum = constant;
+  for (Eigen::Index i = 0; i < z.size(); ++i) sum += z(i) * slope(i);
+  return sum;
 }
 
 DenseQp condense(const WrenchQp& qp) {
@@ -186,7 +188,7 @@ DenseVector solve_dense(const DenseQp& qp) {
       // s dl + lambda ds = aim,  A dz - ds = -primal,  H dz - A' dl = -dual
       const DenseVector rhs =
           -dual + qp.A.transpose() * (aim - lambda.cwiseProduct(primal)).cwiseQuotient(s);
-      const DenseVector dz = factor.solve(rhs);
+      DenseVector dz = factor.solve(rhs);
       ds = qp.A * dz + primal;
       dl = (aim - lambda.cwiseProduct(ds)).cwiseQuotient(s);
       return dz;

@@ -21,14 +21,20 @@ inline core::TerrainMap unseen_map() {
   return map;
 }
 
-/// Sets all cells whose centre lies in the stretch of x and y [m].
+/// From where to where across the map [m].
+struct Strip {
+  double from_y = -2.0;
+  double to_y = 2.0;
+};
+
+/// Sets all cells whose centre lies in the stretch of x and in the strip of y [m].
 inline void set_stretch(core::TerrainMap& map, double from_x, double to_x,
-                        const core::TerrainCell& cell, double from_y = -2.0, double to_y = 2.0) {
+                        const core::TerrainCell& cell, const Strip& strip = {}) {
   for (int iy = 0; iy < map.size_y; ++iy) {
     const double y = map.origin_y + (iy + 0.5) * map.resolution;
     for (int ix = 0; ix < map.size_x; ++ix) {
       const double x = map.origin_x + (ix + 0.5) * map.resolution;
-      if (x >= from_x && x < to_x && y >= from_y && y < to_y) map.at(ix, iy) = cell;
+      if (x >= from_x && x < to_x && y >= strip.from_y && y < strip.to_y) map.at(ix, iy) = cell;
     }
   }
 }

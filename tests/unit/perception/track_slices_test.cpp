@@ -11,6 +11,7 @@ namespace {
 
 using core::CellState;
 using test::set_stretch;
+using test::Strip;
 using test::unseen_map;
 
 const Slice& slice_at(const std::vector<Slice>& slices, double x) {
@@ -48,7 +49,7 @@ TEST_F(TrackSlicesTest, NothingSeenIsUnboundedAndRaysBoundIt) {
 
 TEST_F(TrackSlicesTest, LooselyBoundedCellDoesNotLiftObservedGround) {
   set_stretch(map_, -0.5, 2.0, {.height = 0.1F, .upper = 0.1F, .state = CellState::observed});
-  set_stretch(map_, 0.49, 0.51, {.upper = 0.5F, .state = CellState::occluded}, 0.10, 0.12);
+  set_stretch(map_, 0.49, 0.51, {.upper = 0.5F, .state = CellState::occluded}, Strip{0.10, 0.12});
   const Slice slice = slice_at(cut(), 0.5);
   EXPECT_EQ(slice.kind, SliceKind::level);
   EXPECT_NEAR(slice.upper, 0.0, 1e-6);
@@ -56,8 +57,8 @@ TEST_F(TrackSlicesTest, LooselyBoundedCellDoesNotLiftObservedGround) {
 
 TEST_F(TrackSlicesTest, OneTrackHigherThanTheOtherIsBroken) {
   set_stretch(map_, -0.5, 2.0, {.height = 0.1F, .upper = 0.1F, .state = CellState::observed});
-  set_stretch(map_, 0.4, 0.6, {.height = 0.2F, .upper = 0.2F, .state = CellState::observed}, 0.0,
-              0.5);  // the left half only
+  set_stretch(map_, 0.4, 0.6, {.height = 0.2F, .upper = 0.2F, .state = CellState::observed},
+              Strip{0.0, 0.5});  // the left half only
   const Slice slice = slice_at(cut(), 0.5);
   EXPECT_EQ(slice.kind, SliceKind::broken);
   EXPECT_NEAR(slice.lower, 0.0, 1e-6);
@@ -66,8 +67,8 @@ TEST_F(TrackSlicesTest, OneTrackHigherThanTheOtherIsBroken) {
 
 TEST_F(TrackSlicesTest, WhatLiesBetweenTheTracksDoesNotCount) {
   set_stretch(map_, -0.5, 2.0, {.height = 0.1F, .upper = 0.1F, .state = CellState::observed});
-  set_stretch(map_, 0.4, 0.6, {.height = 0.4F, .upper = 0.4F, .state = CellState::observed}, -0.04,
-              0.04);
+  set_stretch(map_, 0.4, 0.6, {.height = 0.4F, .upper = 0.4F, .state = CellState::observed},
+              Strip{-0.04, 0.04});
   EXPECT_EQ(slice_at(cut(), 0.5).kind, SliceKind::level);
 }
 
