@@ -5,6 +5,7 @@
 #include "control/torque_law.hpp"
 #include "model/kinematics.hpp"
 #include "model/rigid_body.hpp"
+#include "tests/unit/control/allocation_counter.hpp"
 #include "tests/unit/control/fake_plan.hpp"
 
 namespace hopscotch::control {
@@ -194,6 +195,24 @@ TEST_F(ControlTickTest, FlightKeepsTheFeetLevelWhenTheTrunkTurns) {
   const core::JointVector turned = step(control).q;
   const int hip = core::joint_index(core::Leg::left, core::Joint::hip_pitch);
   EXPECT_NEAR(turned[hip] - straight[hip], -0.2, 0.01);  // the plan itself moves a little in a tick
+}
+
+TEST_F(ControlTickTest, AWholeJumpAllocatesNothing) {
+  ControlTick control = standing();
+  MpcQuestion question;
+  question.reference.horizon = 10;
+  step(control);
+  const std::size_t before = testing::allocation_count();
+  control.offer(plan_);
+  for (int i = 0; i < 600; ++i) {
+    const bool contact = control.phase() != RobotPhase::flight || i > 300;
+    state_.contact = {contact, contact};
+    step(control);
+    control.question(question);
+    control.answer({.stamp = state_.stamp, .status = MpcStatus::solved, .form = question.form});
+  }
+  EXPECT_EQ(testing::allocation_count() - before, 0U);
+  EXPECT_EQ(control.phase(), RobotPhase::stand);
 }
 
 TEST_F(ControlTickTest, AFaultDampsAndStaysSo) {
