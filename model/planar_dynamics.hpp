@@ -10,7 +10,10 @@
 namespace hopscotch::model {
 
 /// Links of the sagittal chain, ground to trunk: index order of every `LinkArray`.
-enum PlanarLinkIndex : std::size_t { kFoot = 0, kShank = 1, kThigh = 2, kTrunk = 3 };
+inline constexpr std::size_t kFoot = 0;
+inline constexpr std::size_t kShank = 1;
+inline constexpr std::size_t kThigh = 2;
+inline constexpr std::size_t kTrunk = 3;
 inline constexpr std::size_t kPlanarLinks = 4;
 
 /// One number per link: absolute pitches about +y (+ = nose down) [rad], their rates or
@@ -135,7 +138,7 @@ class PlanarDynamics {
   }
 
   /// M e_j / M: share of link j in the position of the whole-body CoM, in link j's frame [m].
-  [[nodiscard]] PlanarVector<double> com_share(PlanarLinkIndex link) const {
+  [[nodiscard]] PlanarVector<double> com_share(std::size_t link) const {
     return com_share_[link];
   }
 

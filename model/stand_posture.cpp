@@ -43,7 +43,7 @@ StandPosture StandPosture::load(const core::ConfigReader& section) {
 std::optional<LinkArray<double>> links_from_com(const PlanarDynamics& dynamics,
                                                 const PlanarVector<double>& com,
                                                 const LinkArray<double>& known) {
-  const auto share = [&](PlanarLinkIndex link, double pitch) {
+  const auto share = [&](std::size_t link, double pitch) {
     const PlanarVector<double> e = dynamics.com_share(link);
     return PlanarDynamics::turned(e.x, e.z, pitch);
   };

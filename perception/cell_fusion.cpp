@@ -73,17 +73,6 @@ void fuse_height(const MapperConfig& config, const HeightMeasurement& measuremen
   settle(memory);
 }
 
-void fuse_edge(float height, core::TerrainCell& cell, CellMemory& memory) {
-  vote(-1, memory);
-  if (cell.state == CellState::observed) {
-    if (memory.cover_votes >= 0) return;
-    cell = {.upper = height, .state = CellState::occluded};
-    settle(memory);
-  }
-  if (cell.state == CellState::never_seen || cell.upper < height) cell.upper = height;
-  cell.state = CellState::occluded;
-}
-
 void fuse_sight(const MapperConfig& config, float ray_height, int frame, core::TerrainCell& cell,
                 CellMemory& memory) {
   if (cell.state != CellState::observed) {
@@ -98,6 +87,22 @@ void fuse_sight(const MapperConfig& config, float ray_height, int frame, core::T
   if (++memory.through_frames < config.replace_frames) return;
   cell = {.upper = ray_height, .state = CellState::occluded};
   settle(memory);
+}
+
+void fuse_edge(const MapperConfig& config, float height, int frame, core::TerrainCell& cell,
+               CellMemory& memory) {
+  vote(-1, memory);
+  if (cell.state == CellState::observed && memory.cover_votes >= 0) {
+    // Rays that end on this surface passed below whatever was taken to be higher here.
+    fuse_sight(config, height, frame, cell, memory);
+    return;
+  }
+  if (cell.state == CellState::observed) {
+    cell = {.upper = height, .state = CellState::occluded};
+    settle(memory);
+  }
+  if (cell.state == CellState::never_seen || cell.upper < height) cell.upper = height;
+  cell.state = CellState::occluded;
 }
 
 void set_support(float height, float sigma, core::TerrainCell& cell, CellMemory& memory) {

@@ -30,15 +30,16 @@ struct HeightMeasurement {
 void fuse_height(const MapperConfig& config, const HeightMeasurement& measurement,
                  core::TerrainCell& cell, CellMemory& memory);
 
-/// Takes in that a surface ends within the cell, covering less than half of it, at `height`
-/// [m, W]. Frames vote: a cell that more frames find covered less than half is no support. Without
-/// the vote, the farthest of many noisy frames would decide where an edge is.
-void fuse_edge(float height, core::TerrainCell& cell, CellMemory& memory);
-
 /// Takes in that a ray passed over the cell at `ray_height` [m, W] in frame number `frame`: bounds
 /// a hidden cell, and after enough frames clears an observed one that the rays should have hit.
 void fuse_sight(const MapperConfig& config, float ray_height, int frame, core::TerrainCell& cell,
                 CellMemory& memory);
+
+/// Takes in that in frame number `frame` a surface ends within the cell, covering less than half of
+/// it, at `height` [m, W]. Frames vote: a cell that more frames find covered less than half is no
+/// support. Without the vote, the farthest of many noisy frames would decide where an edge is.
+void fuse_edge(const MapperConfig& config, float height, int frame, core::TerrainCell& cell,
+               CellMemory& memory);
 
 /// Makes the cell observed at `height` [m, W] with standard deviation `sigma` [m].
 void set_support(float height, float sigma, core::TerrainCell& cell, CellMemory& memory);

@@ -10,8 +10,8 @@ void cells_under_ray(const core::TerrainMap& map, const Eigen::Vector3d& p_WC,
   const float resolution = static_cast<float>(map.resolution);
   const float near = line.near.head<2>().norm();
   const float far = line.far.head<2>().norm();
-  // The ends are measured, so cells within one diagonal of them are left to the measurement.
-  const float end_zone = 1.5F * resolution;
+  // What lies next to the ends is measured, and better than a ray just above it can tell.
+  const float end_zone = 0.75F * resolution;
   const float start = near + end_zone;
   const float stop = far - end_zone;
   if (!(start < stop)) return;

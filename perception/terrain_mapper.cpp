@@ -29,7 +29,7 @@ struct TerrainMapper::Memory {
 namespace {
 
 /// Jumps on the ground beyond so many cells hide cells that no pixel can reach.
-constexpr double kHiddenCells = 2.0;
+constexpr double kHiddenCells = 1.6;
 /// Cells nearer to the camera's height than this are seen edge-on and say nothing about height.
 constexpr double kLevelSight = 0.05;  // [m]
 
@@ -100,7 +100,7 @@ void fuse_reading(const PerceptionConfig& config, const ViewOfCell& view,
   CellMemory& memory = window.memory[index];
   const bool ends_here = reading.has_riser || memory.edge_frame == window.map.frames;
   if (reading.kind == CellReadingKind::off_centre && ends_here) {
-    fuse_edge(reading.height, cell, memory);
+    fuse_edge(config.mapper, reading.height, window.map.frames, cell, memory);
     return;
   }
   const HeightMeasurement measurement{

@@ -15,7 +15,10 @@ struct StepCounts {
 
 /// Coordinates of the legs and trunk at a knot. The knee is relative, so that its range and speed
 /// are plain bounds; the others are absolute pitches. The foot moves in flight only.
-enum Coordinate : int { kShankPitch = 0, kKneeAngle = 1, kTrunkPitch = 2, kFootPitch = 3 };
+inline constexpr int kShankPitch = 0;
+inline constexpr int kKneeAngle = 1;
+inline constexpr int kTrunkPitch = 2;
+inline constexpr int kFootPitch = 3;
 inline constexpr int kStanceDof = 3;
 inline constexpr int kFlightDof = 4;
 

@@ -58,7 +58,7 @@ struct PlantSetup {
   double sensor_noise = 1.0;     ///< On all noises, biases and quantisation steps; 0 is perfect.
 };
 
-/// One scenario file, `interfaces.md` section 3, checked: terrain, robot, disturbances and goal.
+/// One scenario file, checked: terrain, robot, disturbances and goal.
 /// W is the scenario's frame: the controller's W is the same one when it is given the true state.
 struct Scenario {
   std::string name;

@@ -29,8 +29,8 @@ struct NamedFamily {
   QpFamily family;
 };
 
-void PrintTo(const NamedFamily& named, std::ostream* out) {
-  *out << named.name;
+std::ostream& operator<<(std::ostream& out, const NamedFamily& named) {
+  return out << named.name;
 }
 
 /// Ordinary problems and the edges: little and much friction, weak and strong feet, short and long

@@ -24,6 +24,7 @@ class CellFusionTest : public ::testing::Test {
   MapperConfig config_ = test::perception_config().mapper;
   core::TerrainCell cell_{.upper = std::numeric_limits<float>::infinity()};
   CellMemory memory_;
+  int frame_ = 0;
 };
 
 TEST_F(CellFusionTest, OneFrameAloneDoesNotMakeGround) {
@@ -92,16 +93,25 @@ TEST_F(CellFusionTest, RaysJustAboveAnEdgeDoNotClearIt) {
 
 TEST_F(CellFusionTest, FramesVoteWhetherAnEdgeCellBears) {
   for (int i = 0; i < 20; ++i) {  // two of three frames see less than half of it covered
-    fuse_edge(0.1F, cell_, memory_);
-    fuse_edge(0.1F, cell_, memory_);
+    fuse_edge(config_, 0.1F, frame_++, cell_, memory_);
+    fuse_edge(config_, 0.1F, frame_++, cell_, memory_);
     fuse(kBox, 1);
   }
   EXPECT_EQ(cell_.state, CellState::occluded);
   EXPECT_FLOAT_EQ(cell_.upper, 0.1F);
   fuse(kBox, 10);
   EXPECT_EQ(cell_.state, CellState::observed);
-  for (int i = 0; i < 6; ++i) fuse_edge(0.1F, cell_, memory_);
+  for (int i = 0; i < 6; ++i) fuse_edge(config_, 0.1F, frame_++, cell_, memory_);
   EXPECT_EQ(cell_.state, CellState::occluded);
+}
+
+TEST_F(CellFusionTest, GhostAboveAnEdgeIsClearedByTheSurfaceBelowIt) {
+  fuse(kBox, 6);  // flying pixels that happened to agree
+  for (int i = 0; i < config_.replace_frames; ++i) {
+    fuse_edge(config_, 0.0F, frame_++, cell_, memory_);
+  }
+  EXPECT_EQ(cell_.state, CellState::occluded);
+  EXPECT_FLOAT_EQ(cell_.upper, 0.0F);
 }
 
 TEST_F(CellFusionTest, SupportByContactHoldsAtOnce) {
