@@ -13,7 +13,7 @@ JumpScorer::JumpScorer(const model::RobotParameters& robot, const sim::Terrain& 
 
 void JumpScorer::update(const sim::PlantTruth& truth, const core::ControlStatus& status,
                         const core::JumpPlan& plan) {
-  if (status.phase == RobotPhase::takeoff && phase_ != RobotPhase::takeoff) {
+  if (core::is_pushing_off(status.phase) && !core::is_pushing_off(phase_)) {
     judge(truth);
     begin(truth, plan);
   }
@@ -46,7 +46,7 @@ void JumpScorer::follow(const sim::PlantTruth& truth) {
   peaks_.include(truth);
   jump.peak = {peaks_.torque_ratio, peaks_.speed_ratio, peaks_.power_ratio, peaks_.normal_force};
   const bool contact = truth.state.contact[0] || truth.state.contact[1];
-  const bool leaving = phase_ == RobotPhase::takeoff || phase_ == RobotPhase::flight;
+  const bool leaving = core::is_pushing_off(phase_) || phase_ == RobotPhase::flight;
   if (!contact && !liftoff_ && leaving) {
     liftoff_ = truth.state.stamp;
     const Eigen::Vector3d v_WG = model::composite_body(robot_, truth.state).v_WG;
@@ -55,7 +55,7 @@ void JumpScorer::follow(const sim::PlantTruth& truth) {
     jump.takeoff.speed_z = v_WG.z();
     jump.takeoff.estimate_error = 0.0;  // the controller runs on the true state
   }
-  if (contact && liftoff_ && !touched_ && phase_ != RobotPhase::takeoff) {
+  if (contact && liftoff_ && !touched_ && !core::is_pushing_off(phase_)) {
     touched_ = true;
     jump.flight = truth.state.stamp.since(*liftoff_);
   }

@@ -46,22 +46,30 @@ Pipeline::TerrainOracle oracle_of(const RunRequest& request) {
 
 std::optional<core::JumpPhase> jump_phase(RobotPhase phase) {
   switch (phase) {
+    case RobotPhase::crouch:
     case RobotPhase::takeoff: return core::JumpPhase::takeoff;
     case RobotPhase::flight: return core::JumpPhase::flight;
-    case RobotPhase::landing: return core::JumpPhase::landing;
+    case RobotPhase::landing:
+    case RobotPhase::recover: return core::JumpPhase::landing;
     case RobotPhase::stand:
-    case RobotPhase::damp: return std::nullopt;
+    case RobotPhase::hold:
+    case RobotPhase::damp:
+    case RobotPhase::fault: return std::nullopt;
   }
   return std::nullopt;
 }
 
 Reason fall_reason(RobotPhase phase) {
   switch (phase) {
+    case RobotPhase::crouch:
     case RobotPhase::takeoff: return Reason::fell_in_takeoff;
     case RobotPhase::flight: return Reason::fell_in_flight;
-    case RobotPhase::landing: return Reason::fell_in_landing;
+    case RobotPhase::landing:
+    case RobotPhase::recover: return Reason::fell_in_landing;
     case RobotPhase::stand:
-    case RobotPhase::damp: return Reason::fell_standing;
+    case RobotPhase::hold:
+    case RobotPhase::damp:
+    case RobotPhase::fault: return Reason::fell_standing;
   }
   return Reason::fell_standing;
 }

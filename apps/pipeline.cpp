@@ -47,8 +47,7 @@ core::JointCommand Pipeline::tick(const core::RobotState& state, core::DepthSour
 void Pipeline::start(const core::RobotState& state) {
   const std::optional<model::StandPose> pose = model::stand_pose(robot_, config_.stand_posture);
   HOPSCOTCH_CHECK(pose.has_value());  // start-up refuses a posture that cannot be taken
-  control_.emplace(config_.control, robot_,
-                   control::make_stand_plan(robot_, state, pose->q, pose->trunk_pitch));
+  control_.emplace(config_.control, robot_, control::StandTarget{pose->q, pose->trunk_pitch});
   mapper_.anchor_support(state);
   landed_ = state.stamp;
   still_since_ = state.stamp;
@@ -182,7 +181,7 @@ void Pipeline::watch_mission(const core::RobotState& state) {
   const bool still =
       status.phase == RobotPhase::stand && state.v_WB.norm() < config_.runtime.settle_speed;
   if (!still) still_since_ = state.stamp;
-  if (status.phase != RobotPhase::damp) last_phase_ = status.phase;
+  if (!core::is_limp(status.phase)) last_phase_ = status.phase;
   if (end_) return;
   if (status.fault != core::Reason::none) {
     end_ = MissionEnd::fault;

@@ -92,9 +92,9 @@ void fill_moments(const RawLog& raw, RunRecord& record) {
     }
     if (status == raw.status.end()) continue;
     const auto plan = plans.find(status->control.plan_id);
-    const bool jumping = status->control.phase == RobotPhase::takeoff ||
-                         status->control.phase == RobotPhase::flight ||
-                         status->control.phase == RobotPhase::landing;
+    const RobotPhase phase = status->control.phase;
+    const bool jumping =
+        core::is_pushing_off(phase) || phase == RobotPhase::flight || phase == RobotPhase::landing;
     if (jumping && plan != plans.end()) {
       add_planned(*plan->second, status->control.plan_time, moment);
     }
@@ -108,7 +108,8 @@ void add_time(double time, double duration_ms, std::vector<TimedWork>& list) {
 void fill_phases_and_times(const RawLog& raw, RunRecord& record) {
   for (const msgs::Status& status : raw.status) {
     const double time = record.seconds(status.control.stamp);
-    const RobotPhase phase = status.control.phase;
+    const RobotPhase phase =
+        core::is_pushing_off(status.control.phase) ? RobotPhase::takeoff : status.control.phase;
     if (record.phases.empty() || record.phases.back().phase != phase) {
       record.phases.push_back({phase, time, time});
       if (record.phases.size() > 1) record.phases[record.phases.size() - 2].end = time;

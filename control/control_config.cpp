@@ -20,6 +20,9 @@ SupervisorConfig SupervisorConfig::load(const core::ConfigReader& section) {
   config.tilt_max = section.number("tilt_max_rad", Range::above(0.0, 1.57));
   config.joint_overshoot = section.number("joint_overshoot_rad", Range::closed(0.0, 1.0));
   config.joint_speed_max = section.number("joint_speed_max_rad_s", Range::positive());
+  config.rest_speed = section.number("rest_speed_mps", Range::positive());
+  config.rest_rate = section.number("rest_rate_rad_s", Range::positive());
+  config.commit_speed = section.number("commit_speed_mps", Range::closed(0.0, 1.0));
   section.finish();
   return config;
 }
@@ -32,6 +35,7 @@ ControlConfig ControlConfig::load(const core::ConfigReader& section, double mpc_
   config.actuation_delay = 1e-3 * section.number("actuation_delay_ms", Range::closed(0.0, 20.0));
   config.wrench_age_max = 1e-3 * section.number("wrench_age_max_ms", Range::closed(1.0, 200.0));
   config.anchor_time = section.number("anchor_time_s", Range::closed(0.0, 1.0));
+  config.settle_time = section.number("settle_time_s", Range::above(0.0, 3.0));
   config.wrench_mpc = WrenchMpcConfig::load(section.section("wrench_mpc"));
   section.finish();
   return config;

@@ -23,6 +23,9 @@ struct SupervisorConfig {
   double tilt_max = 0.0;         ///< Trunk away from upright; beyond is a fault [rad].
   double joint_overshoot = 0.0;  ///< Beyond a joint range; more is a fault [rad].
   double joint_speed_max = 0.0;  ///< Any joint; more is a fault [rad/s].
+  double rest_speed = 0.0;       ///< Of the trunk; slower is at rest [m/s].
+  double rest_rate = 0.0;        ///< Of the trunk; slower is at rest [rad/s].
+  double commit_speed = 0.0;     ///< Planned rise of the CoM from which a jump must go on [m/s].
 
   static SupervisorConfig load(const core::ConfigReader& section);
 };
@@ -35,6 +38,7 @@ struct ControlConfig {
   double mpc_delay = 0.0;        ///< From the MPC's state to the tick that uses its answer [s].
   double wrench_age_max = 0.0;   ///< An MPC answer older than this is not used [s].
   double anchor_time = 0.0;  ///< After touchdown the landing follows the feet for this long [s].
+  double settle_time = 0.0;  ///< From anywhere to a stand: switching on, calling a jump off [s].
 
   WrenchMpcConfig wrench_mpc;
 

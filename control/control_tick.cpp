@@ -44,55 +44,9 @@ core::RobotState extrapolate(const core::RobotState& state, double delay) {
 
 }  // namespace
 
-core::JumpPlan make_stand_plan(const model::RobotParameters& robot, const core::RobotState& state,
-                               const core::JointVector& stand_q, double pitch) {
-  const std::array<Eigen::Isometry3d, core::kLegs> soles = model::sole_poses(robot, state);
-  const Eigen::Vector3d forward = soles[0].linear().col(0) + soles[1].linear().col(0);
-  const double yaw = std::atan2(forward.y(), forward.x());
-  core::RobotState posed = state;
-  posed.p_WB.setZero();
-  posed.v_WB.setZero();
-  posed.w_WB.setZero();
-  posed.R_WB = model::rotation_from_rpy({0.0, pitch, yaw});
-  posed.q = stand_q;
-  posed.dq.setZero();
-  posed.p_WB = mid_sole(soles) - mid_sole(model::sole_poses(robot, posed));
-
-  constexpr double kStep = 0.03;  // [s]; the MPC holds the last knot with this step length
-  core::JumpPlan plan;
-  plan.stamp = state.stamp;
-  plan.knot_count = 2;
-  plan.liftoff_time = 0.0;
-  plan.touchdown_time = 0.0;
-  plan.duration = kStep;
-  plan.status = core::PlanStatus::solved;
-  plan.target.X_WF = soles;
-  core::JumpKnot& knot = plan.knots[0];
-  knot.time = 0.0;
-  knot.dt = kStep;
-  knot.phase = core::JumpPhase::landing;
-  knot.contact = {true, true};
-  knot.p_WB = posed.p_WB;
-  knot.rpy = {0.0, pitch, yaw};
-  knot.v_WB.setZero();
-  knot.w_WB.setZero();
-  knot.p_WG = model::composite_body(robot, posed).p_WG;
-  knot.v_WG.setZero();
-  knot.q = stand_q;
-  knot.dq.setZero();
-  knot.tau.setZero();
-  plan.knots[1] = knot;
-  plan.knots[1].time = kStep;
-  plan.knots[1].dt = 0.0;
-  return plan;
-}
-
 ControlTick::ControlTick(const ControlConfig& config, const model::RobotParameters& robot,
-                         const core::JumpPlan& stand)
-    : config_(config), robot_(robot), supervisor_(config.supervisor, robot), plan_(stand) {
-  soles_.takeoff =
-      soles_.landing = {stand.target.X_WF[0].translation(), stand.target.X_WF[1].translation()};
-}
+                         const StandTarget& stand)
+    : config_(config), robot_(robot), supervisor_(config.supervisor, robot), stand_(stand) {}
 
 double ControlTick::command_time(core::Stamp now) const noexcept {
   return now.since(start_);
@@ -114,7 +68,41 @@ void ControlTick::begin_next(const core::RobotState& state) noexcept {
   for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
     soles_.landing[leg] = plan_.target.X_WF[leg].translation() + anchor_.landing;
   }
-  supervisor_.begin_jump();
+  supervisor_.begin_jump(plan_);
+}
+
+/// From the present motion to a stand on the present soles.
+void ControlTick::settle(const core::RobotState& state) noexcept {
+  make_settle_plan(robot_, state, stand_, config_.settle_time, plan_);
+  start_ = state.stamp;
+  soles_.takeoff = soles_.landing = centres(plan_.target.X_WF);
+  anchor_ = {};
+  touchdown_ = state.stamp;
+}
+
+bool ControlTick::hold() noexcept {
+  const bool pushing_off = core::is_pushing_off(phase());
+  if (!supervisor_.hold()) return false;
+  has_next_ = false;
+  if (pushing_off && phase() == RobotPhase::hold) settle(state_);
+  return true;
+}
+
+bool ControlTick::release() noexcept {
+  const bool limp = core::is_limp(phase());
+  if (!supervisor_.release(state_)) return false;
+  if (limp) settle(state_);
+  return true;
+}
+
+bool ControlTick::damp() noexcept {
+  if (!supervisor_.damp()) return false;
+  has_next_ = false;
+  return true;
+}
+
+bool ControlTick::clear_fault() noexcept {
+  return supervisor_.clear_fault();
 }
 
 void ControlTick::follow_feet(const core::RobotState& state) noexcept {
@@ -137,23 +125,24 @@ core::RobotState ControlTick::rest_state() const noexcept {
   return rest;
 }
 
+/// Touchdown sets the clock of the landing.
+void ControlTick::enter_phase(const core::RobotState& state) noexcept {
+  phase_changed_ = phase() != last_phase_;
+  last_phase_ = phase();
+  if (!phase_changed_ || phase() != RobotPhase::landing) return;
+  touchdown_ = state.stamp;
+  start_ = state.stamp.after(-(plan_.touchdown_time + config_.actuation_delay));
+}
+
 core::JointCommand ControlTick::tick(const core::RobotState& state) noexcept {
-  if (!started_) {
-    start_ = state.stamp;
-    touchdown_ = state.stamp;
-    started_ = true;
-  }
+  if (!started_) settle(state);
+  started_ = true;
   state_ = state;
-  const RobotPhase before = phase();
-  if (has_next_ && before == RobotPhase::stand) begin_next(state);
+  if (has_next_ && phase() == RobotPhase::stand) begin_next(state);
   const double body_time = command_time(state.stamp) - config_.actuation_delay;
   supervisor_.update(state, plan_, body_time);
-  phase_changed_ = phase() != before;
-  if (phase_changed_ && phase() == RobotPhase::landing) {
-    touchdown_ = state.stamp;
-    start_ = state.stamp.after(-(plan_.touchdown_time + config_.actuation_delay));
-  }
-  if (phase() == RobotPhase::landing || (phase() == RobotPhase::stand)) follow_feet(state);
+  enter_phase(state);
+  if (phase() == RobotPhase::landing || core::is_standing(phase())) follow_feet(state);
 
   core::JointCommand command;
   command.stamp = state.stamp;
@@ -163,7 +152,7 @@ core::JointCommand ControlTick::tick(const core::RobotState& state) noexcept {
              .plan_time = command_time(state.stamp) - config_.actuation_delay,
              .fault = supervisor_.fault(),
              .wrenches = {}};
-  if (phase() == RobotPhase::damp) {
+  if (core::is_limp(phase())) {
     command.mode = core::DriveMode::damp;
     command.kd << config_.gains.kd, config_.gains.kd;
     return command;
@@ -179,7 +168,7 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
   double time = command_time(state.stamp);
   if (phase() == RobotPhase::flight) time = std::min(time, plan_.touchdown_time);
   const core::JumpKnot planned = sample_plan(plan_, time);
-  const bool compliant = phase() == RobotPhase::landing || phase() == RobotPhase::stand;
+  const bool compliant = phase() == RobotPhase::landing || core::is_standing(phase());
   const double scale = compliant ? config_.gains.compliant_scale : 1.0;
   command.q = planned.q;
   command.dq = planned.dq;
@@ -209,6 +198,7 @@ void ControlTick::set_feed_forward(const core::RobotState& state,
   const double time = command_time(state.stamp);
   const core::JumpKnot planned = sample_plan(plan_, time);
   switch (phase()) {
+    case RobotPhase::crouch:
     case RobotPhase::takeoff: {
       command.tau = planned.tau;
       status_.wrenches = planned.wrenches;
@@ -230,6 +220,8 @@ void ControlTick::set_feed_forward(const core::RobotState& state,
       if (time <= plan_.touchdown_time) command.tau = planned.tau;
       return;
     case RobotPhase::landing:
+    case RobotPhase::recover:
+    case RobotPhase::hold:
     case RobotPhase::stand:
       command.tau = leg_weight_torques(robot_, state);
       if (!answer_is_fresh()) {
@@ -239,14 +231,15 @@ void ControlTick::set_feed_forward(const core::RobotState& state,
       status_.wrenches = answer_.wrenches;
       command.tau += contact_torques(robot_, state, answer_.wrenches);
       return;
-    case RobotPhase::damp: return;
+    case RobotPhase::damp:
+    case RobotPhase::fault: return;
   }
 }
 
 void ControlTick::question(MpcQuestion& out) const noexcept {
   const double delay = config_.mpc_delay + config_.actuation_delay;
   out.state = extrapolate(state_, delay);
-  out.form = phase() == RobotPhase::takeoff ? MpcForm::error_state : MpcForm::full;
+  out.form = core::is_pushing_off(phase()) ? MpcForm::error_state : MpcForm::full;
   out.reference.stamp = out.state.stamp;
   // The body runs `actuation_delay` behind the commands; it will have moved on by `delay`.
   fill_reference(plan_, command_time(state_.stamp) + config_.mpc_delay, anchor_, soles_,

@@ -7,6 +7,7 @@
 #include "control/control_config.hpp"
 #include "control/jump_supervisor.hpp"
 #include "control/plan_follower.hpp"
+#include "control/stand_plan.hpp"
 #include "control/wrench_mpc.hpp"
 #include "core/control_reference.hpp"
 #include "core/control_status.hpp"
@@ -42,8 +43,9 @@ struct MpcAnswer {
 /// Real-time: `tick`, `offer`, `question` and `answer` do not allocate, lock or throw.
 class ControlTick {
  public:
+  /// @param stand Where jumps start and end; the first tick goes there from where the robot is.
   ControlTick(const ControlConfig& config, const model::RobotParameters& robot,
-              const core::JumpPlan& stand);
+              const StandTarget& stand);
 
   /// One millisecond. Returns the set-points of the drives.
   core::JointCommand tick(const core::RobotState& state) noexcept;
@@ -51,9 +53,19 @@ class ControlTick {
   /// Hands over the next jump; it starts when the present one has landed, at once when standing.
   void offer(const core::JumpPlan& plan) noexcept;
 
+  /// The operator's wishes, after the phase table of JumpSupervisor; false = refused in this phase.
+  /// Holding drops the next jump, calls off one that is not past its commit point, and otherwise
+  /// waits for the landing. @pre tick() has run.
+  [[nodiscard]] bool hold() noexcept;
+  /// Jumps may begin again; a limp robot that is upright gets up.
+  [[nodiscard]] bool release() noexcept;
+  [[nodiscard]] bool damp() noexcept;
+  /// A cleared fault leaves the robot limp; `release` is what makes it stand.
+  [[nodiscard]] bool clear_fault() noexcept;
+
   /// True in the phases in which the feet bear load: the MPC has something to choose.
   [[nodiscard]] bool wants_wrenches() const {
-    return phase() != core::RobotPhase::flight && phase() != core::RobotPhase::damp;
+    return phase() != core::RobotPhase::flight && !core::is_limp(phase());
   }
   /// True in the tick that began a phase: the last answer belongs to another one, solve at once.
   [[nodiscard]] bool phase_changed() const { return phase_changed_; }
@@ -75,6 +87,8 @@ class ControlTick {
  private:
   [[nodiscard]] double command_time(core::Stamp now) const noexcept;
   void begin_next(const core::RobotState& state) noexcept;
+  void settle(const core::RobotState& state) noexcept;
+  void enter_phase(const core::RobotState& state) noexcept;
   void follow_feet(const core::RobotState& state) noexcept;
   void set_joint_targets(const core::RobotState& state, core::JointCommand& command) const noexcept;
   void set_feed_forward(const core::RobotState& state, core::JointCommand& command) noexcept;
@@ -83,11 +97,13 @@ class ControlTick {
   ControlConfig config_;
   model::RobotParameters robot_;
   JumpSupervisor supervisor_;
+  StandTarget stand_;
   core::JumpPlan plan_;
   core::JumpPlan next_;
   bool has_next_ = false;
   core::Stamp start_;  ///< Of the plan's clock, as commands see it.
   bool started_ = false;
+  core::RobotPhase last_phase_ = core::RobotPhase::stand;  ///< At the end of the last tick.
   bool phase_changed_ = false;
   core::Stamp touchdown_;
   PlanAnchor anchor_;
@@ -97,12 +113,5 @@ class ControlTick {
   core::ControlStatus status_;
   std::uint64_t stale_ticks_ = 0;
 };
-
-/// The plan that holds a posture for good: two equal knots in landing, soles where they are now.
-/// @param stand_q Joint angles of the posture, legs symmetric [rad].
-/// @param pitch   Of the trunk, + nose down [rad].
-[[nodiscard]] core::JumpPlan make_stand_plan(const model::RobotParameters& robot,
-                                             const core::RobotState& state,
-                                             const core::JointVector& stand_q, double pitch);
 
 }  // namespace hopscotch::control

@@ -1,11 +1,22 @@
 #include "control/jump_supervisor.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hopscotch::control {
 
 using core::Reason;
 using core::RobotPhase;
+
+double commit_time(const core::JumpPlan& plan, double speed) noexcept {
+  double time = 0.0;
+  for (std::size_t i = 0; i < plan.knot_count; ++i) {
+    const core::JumpKnot& knot = plan.knots[i];
+    if (knot.time >= plan.liftoff_time) break;
+    if (knot.v_WG.z() <= speed) time = knot.time;
+  }
+  return time;
+}
 
 JumpSupervisor::JumpSupervisor(const SupervisorConfig& config, const model::RobotParameters& robot)
     : config_(config) {
@@ -30,11 +41,17 @@ Reason JumpSupervisor::find_fault(const core::RobotState& state) const noexcept 
   return Reason::none;
 }
 
-RobotPhase JumpSupervisor::update(const core::RobotState& state, const core::JumpPlan& plan,
-                                  double plan_time) noexcept {
-  if (const Reason fault = find_fault(state); fault != Reason::none) latch(fault);
+bool JumpSupervisor::at_rest(const core::RobotState& state) const noexcept {
+  return state.v_WB.norm() <= config_.rest_speed && state.w_WB.norm() <= config_.rest_rate;
+}
+
+void JumpSupervisor::advance(const core::RobotState& state, const core::JumpPlan& plan,
+                             double plan_time) noexcept {
   const double flight = plan.touchdown_time - plan.liftoff_time;
   switch (phase_) {
+    case RobotPhase::crouch:
+      if (plan_time > commit_time_) phase_ = RobotPhase::takeoff;
+      break;
     case RobotPhase::takeoff:
       if (plan_time >= plan.liftoff_time) phase_ = RobotPhase::flight;
       break;
@@ -47,22 +64,74 @@ RobotPhase JumpSupervisor::update(const core::RobotState& state, const core::Jum
       }
       break;
     case RobotPhase::landing:
-      if (plan_time >= plan.duration) phase_ = RobotPhase::stand;
+      if (plan_time < plan.duration) break;
+      phase_ = at_rest(state) ? RobotPhase::stand : RobotPhase::recover;
+      break;
+    case RobotPhase::recover:
+      if (at_rest(state)) phase_ = RobotPhase::stand;
       break;
     case RobotPhase::stand:
-    case RobotPhase::damp: break;
+    case RobotPhase::hold:
+    case RobotPhase::damp:
+    case RobotPhase::fault: break;
+  }
+}
+
+RobotPhase JumpSupervisor::update(const core::RobotState& state, const core::JumpPlan& plan,
+                                  double plan_time) noexcept {
+  if (const Reason fault = find_fault(state); fault != Reason::none && phase_ != RobotPhase::damp) {
+    latch(fault);
+  }
+  advance(state, plan, plan_time);
+  if (hold_waits_ && core::is_standing(phase_)) {
+    phase_ = RobotPhase::hold;
+    hold_waits_ = false;
   }
   return phase_;
 }
 
-void JumpSupervisor::begin_jump() noexcept {
-  if (phase_ == RobotPhase::stand || phase_ == RobotPhase::landing) phase_ = RobotPhase::takeoff;
+void JumpSupervisor::begin_jump(const core::JumpPlan& plan) noexcept {
+  if (phase_ != RobotPhase::stand && phase_ != RobotPhase::landing) return;
+  commit_time_ = commit_time(plan, config_.commit_speed);
+  phase_ = RobotPhase::crouch;
+}
+
+bool JumpSupervisor::hold() noexcept {
+  if (core::is_limp(phase_)) return false;
+  if (core::is_standing(phase_) || phase_ == RobotPhase::crouch) {
+    phase_ = RobotPhase::hold;
+  } else {
+    hold_waits_ = true;
+  }
+  return true;
+}
+
+bool JumpSupervisor::release(const core::RobotState& state) noexcept {
+  hold_waits_ = false;
+  if (phase_ == RobotPhase::hold) phase_ = RobotPhase::stand;
+  if (phase_ == RobotPhase::damp && find_fault(state) == Reason::none) phase_ = RobotPhase::stand;
+  return !core::is_limp(phase_);
+}
+
+bool JumpSupervisor::damp() noexcept {
+  if (phase_ == RobotPhase::fault) return false;
+  phase_ = RobotPhase::damp;
+  hold_waits_ = false;
+  return true;
+}
+
+bool JumpSupervisor::clear_fault() noexcept {
+  if (phase_ != RobotPhase::fault) return false;
+  phase_ = RobotPhase::damp;
+  fault_ = Reason::none;
+  return true;
 }
 
 void JumpSupervisor::latch(Reason fault) noexcept {
   if (fault_ != Reason::none) return;
   fault_ = fault;
-  phase_ = RobotPhase::damp;
+  phase_ = RobotPhase::fault;
+  hold_waits_ = false;
 }
 
 }  // namespace hopscotch::control

@@ -10,16 +10,27 @@ namespace hopscotch::control {
 
 /// The phase machine:
 ///
-/// | from    | to      | guard                                                             |
-/// | ------- | ------- | ----------------------------------------------------------------- |
-/// | stand   | takeoff | a next plan is at hand                                            |
-/// | takeoff | flight  | the plan's lift-off time has passed                               |
-/// | flight  | landing | a foot bears load after the share `touchdown_from` of the flight  |
-/// | landing | stand   | the plan's duration has passed                                    |
-/// | landing | takeoff | the same, with a next plan at hand                                |
-/// | any     | damp    | a fault: bad value, tilt, joint range or speed, no touchdown      |
+/// | from                         | to      | guard                                           |
+/// | ---------------------------- | ------- | ----------------------------------------------- |
+/// | stand, landing               | crouch  | a next plan begins                              |
+/// | crouch                       | takeoff | the commit point has passed                     |
+/// | takeoff                      | flight  | the plan's lift-off time has passed             |
+/// | flight                       | landing | a foot bears load after `touchdown_from` of it  |
+/// | landing                      | stand   | the plan's duration has passed, at rest         |
+/// | landing                      | recover | the plan's duration has passed, not at rest     |
+/// | recover                      | stand   | at rest                                         |
+/// | stand, crouch, recover       | hold    | the operator's hold                             |
+/// | takeoff, flight, landing     | hold    | a hold asked for there, once stand or recover   |
+/// | hold                         | stand   | the operator's release                          |
+/// | all but fault                | damp    | the operator's damp                             |
+/// | damp                         | stand   | the operator's release, if upright and in range |
+/// | all but damp                 | fault   | bad value, tilt, joint range or speed           |
+/// | flight                       | fault   | no touchdown for too long                       |
+/// | all                          | fault   | a fault found by someone else                   |
+/// | fault                        | damp    | the operator's clearing of the fault            |
 ///
-/// `damp` is left by nothing: the fault is latched. Real-time safe throughout.
+/// Every other wish is refused and changes nothing. Before the commit point a jump can be called
+/// off into a hold; past it only the landing can. Real-time safe throughout.
 class JumpSupervisor {
  public:
   JumpSupervisor(const SupervisorConfig& config, const model::RobotParameters& robot);
@@ -31,22 +42,41 @@ class JumpSupervisor {
                           double plan_time) noexcept;
 
   /// A new plan begins: the robot leaves `stand` or `landing`. Ignored in every other phase.
-  void begin_jump() noexcept;
+  /// @param plan Gives the commit point.
+  void begin_jump(const core::JumpPlan& plan) noexcept;
+
+  /// The operator's wishes; false = refused in this phase.
+  [[nodiscard]] bool hold() noexcept;
+  /// @param state Decides whether a limp robot may get up.
+  [[nodiscard]] bool release(const core::RobotState& state) noexcept;
+  [[nodiscard]] bool damp() noexcept;
+  [[nodiscard]] bool clear_fault() noexcept;
 
   /// Latches a fault found by someone else, e.g. stale sensors.
   void latch(core::Reason fault) noexcept;
 
   [[nodiscard]] core::RobotPhase phase() const { return phase_; }
   [[nodiscard]] core::Reason fault() const { return fault_; }
+  /// A hold was asked for where the robot could not stop; it holds once it has landed.
+  [[nodiscard]] bool hold_waits() const { return hold_waits_; }
 
  private:
   [[nodiscard]] core::Reason find_fault(const core::RobotState& state) const noexcept;
+  [[nodiscard]] bool at_rest(const core::RobotState& state) const noexcept;
+  void advance(const core::RobotState& state, const core::JumpPlan& plan,
+               double plan_time) noexcept;
 
   SupervisorConfig config_;
   core::JointVector lower_;
   core::JointVector upper_;
   core::RobotPhase phase_ = core::RobotPhase::stand;
   core::Reason fault_ = core::Reason::none;
+  double commit_time_ = 0.0;  ///< Of the plan being executed [s].
+  bool hold_waits_ = false;
 };
+
+/// The last moment of a plan's takeoff at which its CoM rises no faster than `speed` [m/s]: until
+/// then the legs can still stop the body on the ground [s].
+[[nodiscard]] double commit_time(const core::JumpPlan& plan, double speed) noexcept;
 
 }  // namespace hopscotch::control

@@ -41,7 +41,7 @@ std::optional<Tagged<Status>> decode(std::span<const std::uint8_t> bytes) {
   value.deadline_misses = message->deadline_misses;
   value.times = {message->tick_ms, message->mpc_ms, message->plan_ms, message->perception_ms,
                  message->estimator_ms};
-  if (!wire::get_enum(message->phase, core::RobotPhase::damp, control.phase) ||
+  if (!wire::get_enum(message->phase, core::RobotPhase::fault, control.phase) ||
       !wire::get_enum(message->fault, core::Reason::internal_error, control.fault)) {
     return std::nullopt;
   }

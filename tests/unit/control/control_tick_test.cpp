@@ -24,11 +24,15 @@ ControlConfig test_config() {
                        .flight_overtime = 0.1,
                        .tilt_max = 1.25,
                        .joint_overshoot = 0.35,
-                       .joint_speed_max = 40.0};
+                       .joint_speed_max = 40.0,
+                       .rest_speed = 0.25,
+                       .rest_rate = 1.0,
+                       .commit_speed = 0.2};
   config.actuation_delay = kActuationDelay;
   config.mpc_delay = 0.001;
   config.wrench_age_max = 0.025;
   config.anchor_time = 0.15;
+  config.settle_time = 0.4;
   return config;
 }
 
@@ -43,15 +47,14 @@ class ControlTickTest : public ::testing::Test {
     state_.dq.setZero();
     state_.contact = {true, true};
     plan_ = testing::jump_shaped_plan(state_.q);
+    for (std::size_t i = 5; i < 10; ++i) plan_.knots[i].v_WG.z() = 1.0;  // pushes off from 0.1 s
   }
   core::JointCommand step(ControlTick& control) {
     const core::JointCommand command = control.tick(state_);
     state_.stamp.nanoseconds += 1'000'000;
     return command;
   }
-  ControlTick standing() {
-    return {test_config(), robot_, make_stand_plan(robot_, state_, state_.q, 0.0)};
-  }
+  ControlTick standing() { return {test_config(), robot_, StandTarget{state_.q, 0.0}}; }
   /// Ticks until the phase is there; contact is lost in flight.
   void run_to(ControlTick& control, RobotPhase phase) {
     for (int i = 0; i < 1000 && control.phase() != phase; ++i) {
@@ -70,20 +73,12 @@ class ControlTickTest : public ::testing::Test {
   core::JumpPlan plan_;
 };
 
-TEST_F(ControlTickTest, StandsOnTheStandPlanFromTheFirstTick) {
+TEST_F(ControlTickTest, StandsFromTheFirstTick) {
   ControlTick control = standing();
   const core::JointCommand command = step(control);
   EXPECT_EQ(command.mode, core::DriveMode::active);
   EXPECT_NEAR((command.q - state_.q).norm(), 0.0, 1e-12);
   EXPECT_DOUBLE_EQ(command.kp[0], 60.0);
-}
-
-TEST_F(ControlTickTest, StandPlanPutsTheSolesWhereTheyAre) {
-  state_.p_WB = {1.0, 2.0, 0.7};
-  state_.R_WB = model::rotation_from_rpy({0.0, 0.0, 0.6});
-  const core::JumpPlan stand = make_stand_plan(robot_, state_, state_.q, 0.0);
-  EXPECT_NEAR((stand.knots[0].p_WB - state_.p_WB).norm(), 0.0, 1e-9);
-  EXPECT_NEAR(stand.knots[0].rpy.z(), 0.6, 1e-9);
 }
 
 TEST_F(ControlTickTest, PlannedTorquesAreSentForTheMomentTheyAct) {
@@ -215,6 +210,68 @@ TEST_F(ControlTickTest, AWholeJumpAllocatesNothing) {
   EXPECT_EQ(control.phase(), RobotPhase::stand);
 }
 
+TEST_F(ControlTickTest, SwitchedOnItGoesToTheStandFromWhereItIs) {
+  ControlTick control{test_config(), robot_, StandTarget{state_.q, 0.0}};
+  const core::JointVector stand = state_.q;
+  state_.q += core::JointVector::Constant(0.05);
+  EXPECT_NEAR((step(control).q - state_.q).norm(), 0.0, 1e-9);
+  core::JointVector last = state_.q;
+  for (int i = 0; i < 500; ++i) {
+    const core::JointVector q = step(control).q;
+    EXPECT_LT((q - last).cwiseAbs().maxCoeff(), 0.001);  // no step of the set-point
+    last = q;
+  }
+  EXPECT_NEAR((last - stand).norm(), 0.0, 1e-9);
+}
+
+TEST_F(ControlTickTest, AJumpIsCalledOffBeforeItsCommitPoint) {
+  ControlTick control = standing();
+  step(control);
+  control.offer(plan_);
+  for (int i = 0; i < 50; ++i) step(control);
+  ASSERT_EQ(control.phase(), RobotPhase::crouch);
+  EXPECT_TRUE(control.hold());
+  core::JointCommand command;
+  for (int i = 0; i < 1000; ++i) command = step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::hold);
+  EXPECT_NEAR((command.q - state_.q).norm(), 0.0, 1e-9);
+  control.offer(plan_);
+  step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::hold);
+  EXPECT_TRUE(control.release());
+  step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::crouch);
+}
+
+TEST_F(ControlTickTest, AHoldInFlightWaitsForTheLandingAndDropsTheNextJump) {
+  ControlTick control = standing();
+  step(control);
+  control.offer(plan_);
+  run_to(control, RobotPhase::flight);
+  control.offer(plan_);
+  EXPECT_TRUE(control.hold());
+  step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::flight);
+  for (int i = 0; i < 60; ++i) step(control);
+  state_.contact = {true, true};
+  for (int i = 0; i < 500; ++i) step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::hold);
+  EXPECT_FALSE(control.has_next());
+}
+
+TEST_F(ControlTickTest, DampedItBrakesUntilReleased) {
+  ControlTick control = standing();
+  step(control);
+  EXPECT_TRUE(control.damp());
+  EXPECT_EQ(step(control).mode, core::DriveMode::damp);
+  state_.q += core::JointVector::Constant(-0.1);
+  step(control);
+  EXPECT_TRUE(control.release());
+  const core::JointCommand command = step(control);
+  EXPECT_EQ(command.mode, core::DriveMode::active);
+  EXPECT_NEAR((command.q - state_.q).norm(), 0.0, 1e-4);  // one tick on its way
+}
+
 TEST_F(ControlTickTest, AFaultDampsAndStaysSo) {
   ControlTick control = standing();
   step(control);
@@ -226,6 +283,12 @@ TEST_F(ControlTickTest, AFaultDampsAndStaysSo) {
   EXPECT_EQ(command.mode, core::DriveMode::damp);
   EXPECT_TRUE(command.tau.isZero(0.0));
   EXPECT_EQ(control.status().fault, core::Reason::bad_sensor_value);
+  EXPECT_FALSE(control.release());
+  EXPECT_TRUE(control.clear_fault());
+  EXPECT_EQ(step(control).mode, core::DriveMode::damp);
+  EXPECT_EQ(control.status().fault, core::Reason::none);
+  EXPECT_TRUE(control.release());
+  EXPECT_EQ(step(control).mode, core::DriveMode::active);
 }
 
 }  // namespace

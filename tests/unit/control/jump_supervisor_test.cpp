@@ -17,7 +17,10 @@ const SupervisorConfig kConfig{.touchdown_from = 0.5,
                                .flight_overtime = 0.1,
                                .tilt_max = 1.25,
                                .joint_overshoot = 0.35,
-                               .joint_speed_max = 40.0};
+                               .joint_speed_max = 40.0,
+                               .rest_speed = 0.25,
+                               .rest_rate = 1.0,
+                               .commit_speed = 0.2};
 
 class JumpSupervisorTest : public ::testing::Test {
  protected:
@@ -30,10 +33,11 @@ class JumpSupervisorTest : public ::testing::Test {
     state_.dq.setZero();
     state_.contact = {true, true};
     plan_ = testing::jump_shaped_plan(state_.q);
+    for (std::size_t i = 5; i < 10; ++i) plan_.knots[i].v_WG.z() = 1.0;  // pushes off from 0.1 s
   }
   /// The phase reached after a jump has begun and `plan_time` has come, without contact in flight.
   void fly_to(double plan_time) {
-    supervisor_.begin_jump();
+    supervisor_.begin_jump(plan_);
     for (double t = 0.0; t < plan_time; t += 0.001) {
       state_.contact = {t < 0.2, t < 0.2};
       supervisor_.update(state_, plan_, t);
@@ -49,7 +53,8 @@ class JumpSupervisorTest : public ::testing::Test {
 
 TEST_F(JumpSupervisorTest, GoesThroughTheTableInOrder) {
   EXPECT_EQ(supervisor_.phase(), RobotPhase::stand);
-  supervisor_.begin_jump();
+  supervisor_.begin_jump(plan_);
+  EXPECT_EQ(supervisor_.update(state_, plan_, 0.001), RobotPhase::crouch);
   EXPECT_EQ(supervisor_.update(state_, plan_, 0.199), RobotPhase::takeoff);
   EXPECT_EQ(supervisor_.update(state_, plan_, 0.200), RobotPhase::flight);
   EXPECT_EQ(supervisor_.update(state_, plan_, 0.260), RobotPhase::landing);
@@ -58,7 +63,7 @@ TEST_F(JumpSupervisorTest, GoesThroughTheTableInOrder) {
 }
 
 TEST_F(JumpSupervisorTest, ContactEarlyInFlightIsTheLiftOffAndNoTouchdown) {
-  supervisor_.begin_jump();
+  supervisor_.begin_jump(plan_);
   supervisor_.update(state_, plan_, 0.2);
   EXPECT_EQ(supervisor_.update(state_, plan_, 0.24), RobotPhase::flight);
 }
@@ -67,14 +72,14 @@ TEST_F(JumpSupervisorTest, LateTouchdownIsWaitedForAndThenAFault) {
   fly_to(0.39);
   EXPECT_EQ(supervisor_.phase(), RobotPhase::flight);
   fly_to(0.41);
-  EXPECT_EQ(supervisor_.phase(), RobotPhase::damp);
+  EXPECT_EQ(supervisor_.phase(), RobotPhase::fault);
   EXPECT_EQ(supervisor_.fault(), Reason::no_touchdown);
 }
 
 TEST_F(JumpSupervisorTest, AJumpBeginsOnlyFromStandOrLanding) {
   fly_to(0.25);
   ASSERT_EQ(supervisor_.phase(), RobotPhase::flight);
-  supervisor_.begin_jump();
+  supervisor_.begin_jump(plan_);
   EXPECT_EQ(supervisor_.phase(), RobotPhase::flight);
 }
 
@@ -83,7 +88,7 @@ TEST_F(JumpSupervisorTest, EachLimitIsAFaultInEachPhase) {
   for (const double time : times) {
     const auto fault_of = [&](auto&& spoil) {
       JumpSupervisor supervisor(kConfig, robot_);
-      if (time >= 0.0) supervisor.begin_jump();
+      if (time >= 0.0) supervisor.begin_jump(plan_);
       for (double t = 0.0; t <= time; t += 0.001) {
         core::RobotState flying = state_;
         if (t >= 0.2) flying.contact = {false, false};
@@ -92,7 +97,7 @@ TEST_F(JumpSupervisorTest, EachLimitIsAFaultInEachPhase) {
       core::RobotState bad = state_;
       bad.contact = {false, false};
       spoil(bad);
-      EXPECT_EQ(supervisor.update(bad, plan_, time), RobotPhase::damp);
+      EXPECT_EQ(supervisor.update(bad, plan_, time), RobotPhase::fault);
       return supervisor.fault();
     };
     EXPECT_EQ(fault_of([](core::RobotState& s) { s.q[3] = core::kNaN; }), Reason::bad_sensor_value);
@@ -110,8 +115,8 @@ TEST_F(JumpSupervisorTest, TheFirstFaultIsLatched) {
   state_.q[0] = core::kNaN;
   supervisor_.update(state_, plan_, 0.0);
   EXPECT_EQ(supervisor_.fault(), Reason::stale_sensors);
-  supervisor_.begin_jump();
-  EXPECT_EQ(supervisor_.phase(), RobotPhase::damp);
+  supervisor_.begin_jump(plan_);
+  EXPECT_EQ(supervisor_.phase(), RobotPhase::fault);
 }
 
 }  // namespace
