@@ -38,6 +38,13 @@ enum class Reason : std::uint8_t {
   tilt_limit,
   deadline,
   mpc_failed,
+  drive_silent,
+  drive_fault,
+  drive_mismatch,
+  encoder_stuck,
+  bus_fault,
+  imu_lost,
+  not_homed,
   // ends by choice
   stopped_by_user,
   jump_count_reached,
@@ -73,6 +80,13 @@ constexpr std::string_view reason_code(Reason reason) {
     case Reason::tilt_limit: return "tilt_limit";
     case Reason::deadline: return "deadline";
     case Reason::mpc_failed: return "mpc_failed";
+    case Reason::drive_silent: return "drive_silent";
+    case Reason::drive_fault: return "drive_fault";
+    case Reason::drive_mismatch: return "drive_mismatch";
+    case Reason::encoder_stuck: return "encoder_stuck";
+    case Reason::bus_fault: return "bus_fault";
+    case Reason::imu_lost: return "imu_lost";
+    case Reason::not_homed: return "not_homed";
     case Reason::stopped_by_user: return "stopped_by_user";
     case Reason::jump_count_reached: return "jump_count_reached";
     case Reason::time_limit: return "time_limit";

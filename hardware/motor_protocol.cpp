@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 namespace hopscotch::hardware {
@@ -11,6 +12,7 @@ constexpr std::uint32_t kPositionCodeMax = 0xFFFF;  // 16 bits
 constexpr std::uint32_t kCodeMax = 0xFFF;           // 12 bits: speed, gains, torque
 constexpr std::uint32_t kIdentifierMax = 0x7FF;     // standard frame
 constexpr std::uint8_t kAllOnes = 0xFF;
+constexpr std::uint8_t kReadRegister = 0x33;
 
 /// kd fills byte 5 and half of byte 6. While it stays below full scale those are never all ones, so
 /// no set-point can look like a special command.
@@ -93,14 +95,24 @@ DriveFault damiao_fault(std::uint8_t status) {
   }
 }
 
-std::uint8_t reply_size(ReplyLayout layout) {
-  switch (layout) {
-    case ReplyLayout::mini_cheetah: return 6;
-    case ReplyLayout::mini_cheetah_supply: return 7;
-    case ReplyLayout::ak:
-    case ReplyLayout::damiao: return 8;
+/// A fault as the family's code; families without such a code have no way to say it.
+std::uint8_t ak_code(DriveFault fault) {
+  for (std::uint8_t code = 0; code <= 6; ++code) {
+    if (ak_fault(code) == fault) return code;
   }
-  return 0;
+  return 7;  // any code that the family does not define
+}
+
+std::uint8_t damiao_status(const DriveReply& reply) {
+  if (reply.fault == DriveFault::none) return reply.enabled.value_or(false) ? 0x1 : 0x0;
+  for (std::uint8_t status = 0x8; status <= 0xE; ++status) {
+    if (damiao_fault(status) == reply.fault) return status;
+  }
+  return 0xF;
+}
+
+std::uint8_t whole_byte(double value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
 }
 
 void decode_extras(const DriveFamily& family, const CanFrame& frame, DriveReply& reply) {
@@ -200,6 +212,16 @@ std::optional<DriveSetpoint> decode_setpoint(const DriveFamily& family,
                        .torque = scales.torque.value((b[6] & 0xFU) << 8U | b[7])};
 }
 
+std::size_t reply_size(ReplyLayout layout) noexcept {
+  switch (layout) {
+    case ReplyLayout::mini_cheetah: return 6;
+    case ReplyLayout::mini_cheetah_supply: return 7;
+    case ReplyLayout::ak:
+    case ReplyLayout::damiao: return 8;
+  }
+  return 0;
+}
+
 DecodeStatus decode_reply(const DriveFamily& family, const CanFrame& frame,
                           DriveReply& reply) noexcept {
   if (frame.id > kIdentifierMax) return DecodeStatus::bad_identifier;
@@ -214,6 +236,63 @@ DecodeStatus decode_reply(const DriveFamily& family, const CanFrame& frame,
   reply.torque = scales.torque.value((b[4] & 0xFU) << 8U | b[5]);
   decode_extras(family, frame, reply);
   return DecodeStatus::ok;
+}
+
+CanFrame encode_reply(const DriveFamily& family, std::uint32_t reply_id,
+                      const DriveReply& reply) noexcept {
+  const Scales scales = scales_of(family);
+  const std::uint32_t p = scales.position.code(reply.position);
+  const std::uint32_t v = scales.speed.code(reply.speed);
+  const std::uint32_t t = scales.torque.code(reply.torque);
+  CanFrame frame{.id = reply_id, .size = static_cast<std::uint8_t>(reply_size(family.reply))};
+  frame.data = {reply.drive_id, byte(p >> 8U),           byte(p),
+                byte(v >> 4U),  byte(v << 4U | t >> 8U), byte(t)};
+  switch (family.reply) {
+    case ReplyLayout::mini_cheetah: break;
+    case ReplyLayout::mini_cheetah_supply:
+      frame.data[6] = byte(Scale{0.0, family.supply_max, kAllOnes}.code(reply.supply));
+      break;
+    case ReplyLayout::ak:
+      frame.data[6] = whole_byte(reply.temperature_degC - family.temperature_offset_degC);
+      frame.data[7] = ak_code(reply.fault);
+      break;
+    case ReplyLayout::damiao:
+      frame.data[0] =
+          byte(static_cast<std::uint32_t>(damiao_status(reply)) << 4U | (reply.drive_id & 0x0FU));
+      frame.data[6] = whole_byte(reply.temperature_degC);
+      frame.data[7] = whole_byte(reply.rotor_temperature_degC);
+      break;
+  }
+  return frame;
+}
+
+CanFrame encode_register_request(std::uint8_t drive_id, DriveRegister which) noexcept {
+  CanFrame frame{.id = kRegisterIdentifier, .size = 8};
+  frame.data = {drive_id, 0, kReadRegister, static_cast<std::uint8_t>(which)};
+  return frame;
+}
+
+CanFrame encode_register_answer(std::uint32_t reply_id, const RegisterMessage& message) noexcept {
+  CanFrame frame = encode_register_request(message.drive_id, message.which);
+  frame.id = reply_id;
+  // Little-endian float, unlike everything else on this bus.
+  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(message.value));
+  for (std::size_t i = 0; i < 4; ++i) frame.data[4 + i] = byte(bits >> (8 * i));
+  return frame;
+}
+
+std::optional<RegisterMessage> decode_register(const CanFrame& frame) noexcept {
+  if (frame.size != 8 || frame.data[1] != 0 || frame.data[2] != kReadRegister) return std::nullopt;
+  const auto first = static_cast<std::uint8_t>(DriveRegister::position_max);
+  const auto last = static_cast<std::uint8_t>(DriveRegister::torque_max);
+  if (frame.data[3] < first || frame.data[3] > last) return std::nullopt;
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    bits |= static_cast<std::uint32_t>(frame.data[4 + i]) << (8 * i);
+  }
+  return RegisterMessage{.drive_id = frame.data[0],
+                         .which = static_cast<DriveRegister>(frame.data[3]),
+                         .value = static_cast<double>(std::bit_cast<float>(bits))};
 }
 
 }  // namespace hopscotch::hardware

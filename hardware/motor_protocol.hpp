@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -96,5 +97,39 @@ enum class DecodeStatus : std::uint8_t {
 /// @param[out] reply Written only when the status is `ok`.
 [[nodiscard]] DecodeStatus decode_reply(const DriveFamily& family, const CanFrame& frame,
                                         DriveReply& reply) noexcept;
+
+/// Bytes of an answer.
+[[nodiscard]] std::size_t reply_size(ReplyLayout layout) noexcept;
+
+/// The inverse of `decode_reply`, for emulated drives: rounds to the nearest code, clamps to the
+/// family's ranges. @param reply_id Identifier of the frame. @pre the numbers of the layout are
+/// finite.
+[[nodiscard]] CanFrame encode_reply(const DriveFamily& family, std::uint32_t reply_id,
+                                    const DriveReply& reply) noexcept;
+
+/// Settings of a Damiao drive that tell its ranges.
+enum class DriveRegister : std::uint8_t {
+  position_max = 0x15,
+  speed_max = 0x16,
+  torque_max = 0x17
+};
+
+/// What a register request or its answer says.
+struct RegisterMessage {
+  std::uint8_t drive_id = 0;
+  DriveRegister which = DriveRegister::position_max;
+  double value = 0.0;  ///< Answers only, SI units.
+};
+/// Register requests go to every Damiao drive with this identifier.
+inline constexpr std::uint32_t kRegisterIdentifier = 0x7FF;
+
+/// Asks a Damiao drive for a register; it answers with its reply identifier.
+[[nodiscard]] CanFrame encode_register_request(std::uint8_t drive_id, DriveRegister which) noexcept;
+[[nodiscard]] CanFrame encode_register_answer(std::uint32_t reply_id,
+                                              const RegisterMessage& message) noexcept;
+/// Nothing if the frame is neither a request (identifier 0x7FF) nor an answer for one of the three
+/// registers. An ordinary answer can have the same first bytes by chance, so ask only while none is
+/// under way.
+[[nodiscard]] std::optional<RegisterMessage> decode_register(const CanFrame& frame) noexcept;
 
 }  // namespace hopscotch::hardware

@@ -138,9 +138,7 @@ class PlanarDynamics {
   }
 
   /// M e_j / M: share of link j in the position of the whole-body CoM, in link j's frame [m].
-  [[nodiscard]] PlanarVector<double> com_share(std::size_t link) const {
-    return com_share_[link];
-  }
+  [[nodiscard]] PlanarVector<double> com_share(std::size_t link) const { return com_share_[link]; }
 
  private:
   /// Real and imaginary parts of C.
