@@ -1,4 +1,3 @@
-#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -8,11 +7,14 @@
 #include <string>
 #include <thread>
 
+#include "apps/command_gate.hpp"
 #include "apps/commands.hpp"
 #include "apps/installation.hpp"
 #include "apps/key_frames.hpp"
+#include "apps/live_run.hpp"
 #include "apps/lockstep_run.hpp"
 #include "apps/report.hpp"
+#include "apps/run_attendant.hpp"
 #include "apps/run_recorder.hpp"
 #include "apps/stopwatch.hpp"
 #include "apps/text_file.hpp"
@@ -36,6 +38,7 @@ struct RunOptions {
   double pace = 0.0;
   bool video = false;
   bool view = false;
+  bool lcm = false;
   bool no_pictures = false;
   bool json = false;
 };
@@ -66,18 +69,34 @@ Prepared prepare(const RunOptions& options) {
   return prepared;
 }
 
-std::string hex(std::uint64_t id) {
-  std::array<char, 17> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(id));
-  return text.data();
-}
-
 /// Waits until simulated time is due on the wall clock.
 void keep_pace(double pace, core::Stamp now, const Stopwatch& watch) {
   if (pace <= 0.0) return;
   const double ahead_ms = 1e3 * now.seconds() / pace - watch.milliseconds();
   if (ahead_ms > 1.0)
     std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ahead_ms));
+}
+
+/// Live channels are for runs that somebody watches. Without --lcm they are a convenience: a
+/// machine that cannot carry them runs without.
+std::unique_ptr<LiveRun> open_live(const RunOptions& options, CommandBox& box) {
+  if (!options.lcm && options.pace <= 0.0 && !options.view) return nullptr;
+  try {
+    return std::make_unique<LiveRun>(live_url(), box);
+  } catch (const msgs::LiveUnavailable& error) {
+    if (options.lcm) throw;
+    std::fprintf(stderr, "hopscotch: %s. The run goes on without them.\n", error.what());
+    return nullptr;
+  }
+}
+
+/// Everything but commands: those came from the network.
+RunRecorder::Listener to_network(LiveRun& live) {
+  return [&live](const msgs::Event& event) {
+    const bool command =
+        event.channel == msgs::kTargetCommandChannel || event.channel == msgs::kModeCommandChannel;
+    if (!command) live.publish(event);
+  };
 }
 
 void say_jump(const JumpResult& jump, std::FILE* people) {
@@ -125,20 +144,26 @@ ExitStatus run(const RunOptions& options) {
       options.perception.c_str(), options.state.c_str());
 
   RunRecorder recorder(out, id, prepared.request, prepared.sources);
+  RunAttendant attendant(id, recorder);
+  const std::unique_ptr<LiveRun> live = open_live(options, attendant.box());
+  if (live) recorder.add_listener(to_network(*live));
   LockstepRun simulation(prepared.request);
   std::signal(SIGINT, on_interrupt);
   const double pace = options.pace > 0.0 ? options.pace : (options.view ? 1.0 : 0.0);
   const Stopwatch watch;
   const auto observe = [&](const TickRecord& tick) {
     recorder.record(tick);
+    attendant.note(tick.events);
     if (view) view->show(tick.truth.state);
   };
   while (simulation.step(observe)) {
     keep_pace(pace, simulation.now(), watch);
     if (interrupted || (view && view->closed())) simulation.stop();
+    attendant.attend(simulation);
   }
+  attendant.close(simulation.now());
   RunResult result = simulation.result();
-  result.run_id = hex(id);
+  result.run_id = run_id_text(id);
   result.program = std::string(program_version());
   result.timing.real_time_factor = 1e3 * result.duration / watch.milliseconds();
   const RunFolder folder = recorder.finish(result);
@@ -180,6 +205,8 @@ void add_run_command(CLI::App& app, Action& action) {
   command->add_flag("--video", options->video, "Write video.mp4");
   command->add_flag("--no-pictures", options->no_pictures, "Report without key frames: faster");
   command->add_flag("--view", options->view, "Show it in a window, in real time");
+  command->add_flag("--lcm", options->lcm,
+                    "Live LCM channels and commands; --pace and --view have them too");
   command->add_flag("--json", options->json, "Print result.json on standard output");
   command->callback([&action, options] { action = [options] { return run(*options); }; });
 }

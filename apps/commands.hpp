@@ -19,6 +19,8 @@ using Action = std::function<ExitStatus()>;
 /// Each adds one subcommand with its options; the parsed subcommand stores what to do in `action`.
 void add_run_command(CLI::App& app, Action& action);
 void add_plan_command(CLI::App& app, Action& action);
+void add_target_command(CLI::App& app, Action& action);
+void add_command_command(CLI::App& app, Action& action);
 void add_report_command(CLI::App& app, Action& action);
 void add_doctor_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);

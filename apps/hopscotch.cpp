@@ -17,6 +17,8 @@ int main(int argc, char** argv) {
   Action action;
   hopscotch::apps::add_run_command(app, action);
   hopscotch::apps::add_plan_command(app, action);
+  hopscotch::apps::add_target_command(app, action);
+  hopscotch::apps::add_command_command(app, action);
   hopscotch::apps::add_report_command(app, action);
   hopscotch::apps::add_doctor_command(app, action);
   hopscotch::apps::add_bench_command(app, action);

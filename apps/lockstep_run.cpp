@@ -101,7 +101,7 @@ bool LockstepRun::step(const std::function<void(const TickRecord&)>& observe) {
   collect_times();
   if (observe) {
     observe({readings, truth.state, command_, truth, pipeline_.status(), pipeline_.events(),
-             pipeline_.plan(), static_cast<int>(scorer_.jumps().size())});
+             pipeline_.plan(), static_cast<int>(scorer_.jumps().size()), pipeline_.held()});
   }
   judge(truth);
   return !ended_;
@@ -117,7 +117,13 @@ void LockstepRun::collect_times() {
 
 void LockstepRun::judge(const sim::PlantTruth& truth) {
   const core::ControlStatus& status = pipeline_.status();
+  if (status.fault == Reason::none) fault_since_.reset();  // the operator cleared it
   if (const std::optional<std::string> fall = sim::fall_of(truth)) {
+    if (status.phase == RobotPhase::damp) {
+      end(RunOutcome::stopped, {Reason::stopped_by_user, "damped by the operator, then: " + *fall},
+          truth);
+      return;
+    }
     const core::Refusal reason{fall_reason(pipeline_.last_active_phase()), *fall};
     scorer_.fell(reason);
     ++result_.falls;
@@ -135,6 +141,8 @@ void LockstepRun::judge(const sim::PlantTruth& truth) {
                          request_.scenario.goal.jumps != request_.jumps_max;
     if (*mission_end == MissionEnd::refused) {
       end(RunOutcome::refused, pipeline_.end_reason(), truth);
+    } else if (*mission_end == MissionEnd::stopped) {
+      end(RunOutcome::stopped, pipeline_.end_reason(), truth);
     } else if (limited) {
       end(RunOutcome::stopped, {Reason::jump_count_reached, "as asked by --jumps"}, truth);
     } else {

@@ -40,6 +40,7 @@ struct TickRecord {
   const PipelineEvents& events;
   const core::JumpPlan& plan;  ///< Being executed.
   int jump = 0;                ///< Number of the present jump, from 1; 0 before the first.
+  bool held = false;           ///< By the operator.
 };
 
 /// Robot brain and simulated world in lock-step, one millisecond at a time, on the true state.
@@ -50,6 +51,9 @@ class LockstepRun {
 
   /// One tick; `observe` sees it before the verdict. False once the run has ended.
   bool step(const std::function<void(const TickRecord&)>& observe);
+
+  /// A wish of the operator; its answer is among the events of a later tick. @pre step() has run.
+  void apply(const core::OperatorCommand& command) { pipeline_.apply(command); }
 
   /// Ends the run where it stands, e.g. at the user's wish.
   void stop();

@@ -41,6 +41,8 @@ core::JointCommand Pipeline::tick(const core::RobotState& state, core::DepthSour
   events_.tick_ms = watch.milliseconds();
   balance(state.stamp);
   watch_mission(state);
+  if (end_) desk_.withdraw_target("the run ended first");
+  events_.answers = desk_.take_answers();
   return command;
 }
 
@@ -96,8 +98,9 @@ void Pipeline::balance(core::Stamp now) {
 
 bool Pipeline::may_decide(const core::RobotState& state) const {
   if (end_ || control_->has_next() || !plans_.empty()) return false;
+  if (held() && !desk_.due()) return false;
   const RobotPhase phase = control_->phase();
-  if (phase != RobotPhase::stand && phase != RobotPhase::landing) return false;
+  if (!core::is_standing(phase) && phase != RobotPhase::landing) return false;
   const bool looked = oracle_ || frames_since_landing_ >= config_.runtime.look_frames;
   return looked && state.stamp.since(landed_) >= config_.runtime.look_time &&
          !mission_accomplished(state);
@@ -110,13 +113,17 @@ void Pipeline::choose_and_plan(const core::RobotState& state) {
   const perception::OneStepConfig& one_step = config_.perception.one_step;
   const perception::StancePose stance = perception::stance_pose(one_step, robot_, rest);
   events_.terrain = perception::one_step_terrain(one_step, map, stance);
-  events_.choice = selector_.choose({map, *events_.terrain}, rest, task_);
+  for_operator_ = desk_.due().has_value();
+  footstep::LandingTask task = task_;
+  if (for_operator_) task.target = desk_.due();
+  events_.choice = selector_.choose({map, *events_.terrain}, rest, task);
   if (!events_.choice->target) {
     refuse(state.stamp, events_.choice->refusal);
     return;
   }
   refused_since_.reset();
-  if (!task_.target) choice_ = *events_.choice;
+  if (!for_operator_) events_.choice->target->source = task_.source;  // the next best is no wish
+  if (!task.target) choice_ = *events_.choice;
   choice_.target = events_.choice->target;
   const Stopwatch watch;
   core::Result<core::JumpPlan> plan = planner_.plan({.start = rest,
@@ -128,14 +135,28 @@ void Pipeline::choose_and_plan(const core::RobotState& state) {
   plans_.push(std::move(plan), state.stamp.after(config_.runtime.planning_latency));
 }
 
-/// A target that cannot be planned makes way for the next best one that is not about the same.
 void Pipeline::receive_plan(const core::Result<core::JumpPlan>& plan) {
   task_.target.reset();
+  if (for_operator_) {
+    const core::ControlStatus& status = control_->status();
+    const bool landing = status.phase == RobotPhase::landing;
+    const double start_in =
+        landing ? std::max(0.0, control_->plan().duration - status.plan_time) : 0.0;
+    const bool check_only = desk_.check_only();
+    if (plan) desk_.accept_target(start_in);
+    if (!plan) desk_.refuse_target(plan.error());
+    if (!plan || check_only) return;
+  }
   if (plan) {
     failed_distances_.clear();
     control_->offer(*plan);
-    return;
+  } else {
+    next_best(plan.error());
   }
+}
+
+/// A target that cannot be planned makes way for the next best one that is not about the same.
+void Pipeline::next_best(const core::Refusal& refusal) {
   constexpr double kSamePlace = 0.04;  // [m]
   failed_distances_.push_back(choice_.target->distance);
   for (std::size_t i = 0; i < choice_.ranked_count; ++i) {
@@ -148,12 +169,16 @@ void Pipeline::receive_plan(const core::Result<core::JumpPlan>& plan) {
     }
   }
   end_ = MissionEnd::refused;
-  end_reason_ = plan.error();
+  end_reason_ = refusal;
 }
 
 /// No target now may be one a few frames later.
 void Pipeline::refuse(core::Stamp now, const core::Refusal& refusal) {
   task_.target.reset();
+  if (for_operator_) {
+    desk_.refuse_target(refusal);
+    return;
+  }
   if (!refused_since_) refused_since_ = now;
   if (now.since(*refused_since_) < config_.runtime.patience) return;
   end_ = MissionEnd::refused;
@@ -178,8 +203,8 @@ void Pipeline::watch_mission(const core::RobotState& state) {
     frames_since_landing_ = 0;
     ++jumps_done_;
   }
-  const bool still =
-      status.phase == RobotPhase::stand && state.v_WB.norm() < config_.runtime.settle_speed;
+  const bool standing = status.phase == RobotPhase::stand || status.phase == RobotPhase::hold;
+  const bool still = standing && state.v_WB.norm() < config_.runtime.settle_speed;
   if (!still) still_since_ = state.stamp;
   if (!core::is_limp(status.phase)) last_phase_ = status.phase;
   if (end_) return;
@@ -187,9 +212,13 @@ void Pipeline::watch_mission(const core::RobotState& state) {
     end_ = MissionEnd::fault;
     end_reason_ = {status.fault,
                    "the controller gave up in " + std::string(core::robot_phase_name(last_phase_))};
-  } else if (mission_accomplished(state) &&
-             state.stamp.since(still_since_) >= config_.runtime.settle_time) {
-    end_ = MissionEnd::reached;
+  } else if (state.stamp.since(still_since_) >= config_.runtime.settle_time) {
+    if (mission_accomplished(state)) {
+      end_ = MissionEnd::reached;
+    } else if (desk_.mode() == OperatorDesk::Mode::stopping) {
+      end_ = MissionEnd::stopped;
+      end_reason_ = {core::Reason::stopped_by_user, "by the operator's command"};
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/delayed.hpp"
+#include "apps/operator_desk.hpp"
 #include "apps/program_config.hpp"
 #include "apps/state_history.hpp"
 #include "control/control_tick.hpp"
@@ -31,14 +32,15 @@ struct Mission {
 };
 
 /// Why the robot jumps no more.
-enum class MissionEnd : std::uint8_t { reached, refused, fault };
+enum class MissionEnd : std::uint8_t { reached, refused, fault, stopped };
 
 /// What the stages produced in one tick, for logs; empty where nothing was due.
 struct PipelineEvents {
   std::optional<core::OneStepTerrain> terrain;
   std::optional<core::TargetChoice> choice;
   std::optional<core::Result<core::JumpPlan>> plan;
-  std::optional<double> perception_ms;  ///< Wall time of the stage in this tick.
+  std::vector<core::OperatorAnswer> answers;  ///< To commands of the operator.
+  std::optional<double> perception_ms;        ///< Wall time of the stage in this tick.
   std::optional<double> planning_ms;
   std::optional<double> mpc_ms;
   double tick_ms = 0.0;
@@ -57,6 +59,11 @@ class Pipeline {
 
   /// One millisecond: state and camera in, joint commands out.
   core::JointCommand tick(const core::RobotState& state, core::DepthSource& camera);
+
+  /// A wish of the operator, between ticks. The answer is among the events of a later tick: of the
+  /// next one, or for a landing target once it has been planned. @pre tick() has run.
+  void apply(const core::OperatorCommand& command);
+  [[nodiscard]] bool held() const { return desk_.mode() != OperatorDesk::Mode::free; }
 
   /// Set once the robot stands and will not jump again.
   [[nodiscard]] std::optional<MissionEnd> end() const { return end_; }
@@ -79,6 +86,11 @@ class Pipeline {
   [[nodiscard]] bool may_decide(const core::RobotState& state) const;
   [[nodiscard]] bool mission_accomplished(const core::RobotState& state) const;
   void refuse(core::Stamp now, const core::Refusal& refusal);
+  void apply_target(const core::OperatorCommand& command);
+  void apply_mode(const core::OperatorCommand& command);
+  void enable(const core::OperatorCommand& command);
+  void clear_fault(const core::OperatorCommand& command);
+  void next_best(const core::Refusal& refusal);
 
   ProgramConfig config_;
   model::RobotParameters robot_;
@@ -102,6 +114,8 @@ class Pipeline {
   core::Stamp still_since_;  ///< Standing still since then.
   std::optional<core::Stamp> refused_since_;
   footstep::LandingTask task_;
+  OperatorDesk desk_;
+  bool for_operator_ = false;  ///< The plan that is being made answers the operator's target.
   core::TargetChoice choice_;  ///< The target being planned, with the ranked places it was among.
   std::vector<double> failed_distances_;  ///< Of places that could not be planned from here [m].
   core::RobotPhase last_phase_ = core::RobotPhase::stand;

@@ -1,8 +1,12 @@
 #include "apps/run_recorder.hpp"
 
+#include <cstdio>
 #include <sstream>
+#include <stdexcept>
+#include <utility>
 
 #include "apps/installation.hpp"
+#include "apps/live_run.hpp"
 #include "apps/text_file.hpp"
 #include "core/config_reader.hpp"
 #include "sim/scene_builder.hpp"
@@ -68,9 +72,13 @@ std::uint64_t run_identity(const RunSources& sources, const RunRequest& request)
 
 RunRecorder::RunRecorder(const fs::path& folder, std::uint64_t run_id, const RunRequest& request,
                          const RunSources& sources)
-    : folder_(folder), partial_{make_partial(folder)}, log_(partial_.log(), run_id) {
+    : folder_(folder),
+      partial_{make_partial(folder)},
+      maker_(run_id),
+      log_(partial_.log(), run_id),
+      scene_(maker_.make({}, scene_of(request.scenario, request.plant_robot.name))) {
   write_sources(request, sources);
-  log_.write({}, scene_of(request.scenario, request.plant_robot.name));
+  put(scene_);
 }
 
 RunRecorder::~RunRecorder() {
@@ -90,27 +98,70 @@ void RunRecorder::write_sources(const RunRequest& request, const RunSources& sou
                         sim::scene_mjcf(request.plant_robot, request.scenario.true_terrain()));
 }
 
+void RunRecorder::add_listener(Listener listener) {
+  listener(scene_);
+  listeners_.push_back(std::move(listener));
+}
+
+void RunRecorder::put(const msgs::Event& event) {
+  for (const Listener& listener : listeners_) listener(event);
+  if (log_broken_) return;
+  try {
+    log_.write(event);
+  } catch (const std::runtime_error& error) {
+    log_broken_ = true;
+    std::fprintf(stderr, "hopscotch: %s: the run goes on, its log ends at %.2f s\n", error.what(),
+                 event.now.seconds());
+  }
+}
+
+void RunRecorder::record(core::Stamp now, const core::OperatorCommand& command) {
+  const core::Stamp made{static_cast<std::int64_t>(command.sequence) * 1000};
+  const msgs::Tag tag{command.sequence, command.run_id};
+  if (command.mode == core::ModeRequest::none) {
+    const msgs::TargetCommand message{made, command.target};
+    put({now, msgs::channel_of(message), msgs::encode(message, tag)});
+  } else {
+    const msgs::ModeCommand message{made, command.mode, command.goal_x};
+    put({now, msgs::channel_of(message), msgs::encode(message, tag)});
+  }
+}
+
+void RunRecorder::record(core::Stamp now, const core::OperatorAnswer& answer) {
+  put(now, ack_of(now, answer));
+}
+
 void RunRecorder::record(const TickRecord& tick) {
   const core::Stamp now = tick.truth.state.stamp;
   const PipelineEvents& events = tick.events;
-  log_.write(now, tick.readings);
-  if (events.terrain) log_.write(now, *events.terrain);
-  if (events.choice) log_.write(now, *events.choice);
-  if (events.plan && events.plan->has_value()) log_.write(now, **events.plan);
+  put(now, tick.readings);
+  if (events.terrain) put(now, *events.terrain);
+  if (events.choice) put(now, *events.choice);
+  if (events.plan && events.plan->has_value()) put(now, **events.plan);
+  for (const core::OperatorAnswer& answer : events.answers) record(now, answer);
   if (events.perception_ms) times_.perception_ms = *events.perception_ms;
   if (events.planning_ms) times_.plan_ms = *events.planning_ms;
   if (events.mpc_ms) times_.mpc_ms = *events.mpc_ms;
   times_.tick_ms = events.tick_ms;
   if (ticks_++ % kTicksPerRecord != 0) return;
-  log_.write(now, tick.state);
-  log_.write(now, tick.command);
-  log_.write(now, msgs::Status{tick.status, tick.jump, 0, times_});
-  log_.write(now, msgs::Truth{now, tick.truth.state, tick.truth.ground, tick.truth.tau});
+  put(now, tick.state);
+  put(now, tick.command);
+  put(now, msgs::Status{tick.status, tick.jump, 0, tick.held, times_});
+  put(now, msgs::Truth{now, tick.truth.state, tick.truth.ground, tick.truth.tau});
   times_ = {};
 }
 
+void RunRecorder::close_log() {
+  try {
+    log_.close();
+  } catch (const std::runtime_error& error) {
+    if (!log_broken_) std::fprintf(stderr, "hopscotch: %s: the log is cut short\n", error.what());
+    log_broken_ = true;
+  }
+}
+
 RunFolder RunRecorder::finish(const RunResult& result) {
-  log_.close();
+  close_log();
   write_run_result(partial_.result(), result);
   fs::remove_all(folder_);
   fs::rename(partial_.path, folder_);

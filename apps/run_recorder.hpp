@@ -2,11 +2,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "apps/lockstep_run.hpp"
 #include "apps/run_folder.hpp"
 #include "apps/run_result.hpp"
+#include "core/operator_command.hpp"
+#include "msgs/event.hpp"
 #include "msgs/run_log.hpp"
 
 namespace hopscotch::apps {
@@ -18,10 +22,13 @@ struct RunSources {
   std::string robot;          ///< YAML of the simulated robot.
 };
 
-/// Writes a run folder. Everything goes to `<folder>.partial` and takes its name at the end, so
-/// that a run folder is whole or not there.
+/// Turns a run into events, writes them into a run folder and shows them to whoever listens.
+/// Everything goes to `<folder>.partial` and takes its name at the end, so that a run folder is
+/// whole or not there. When the disk refuses the log, the run goes on without it and says so.
 class RunRecorder {
  public:
+  using Listener = std::function<void(const msgs::Event&)>;
+
   /// @throws core::ConfigError if `folder` exists and is no run folder; std::runtime_error if the
   ///         disk refuses.
   RunRecorder(const std::filesystem::path& folder, std::uint64_t run_id, const RunRequest& request,
@@ -30,17 +37,33 @@ class RunRecorder {
   RunRecorder(const RunRecorder&) = delete;
   RunRecorder& operator=(const RunRecorder&) = delete;
 
+  /// From now on `listener` sees every event; the scene, which came first, at once.
+  void add_listener(Listener listener);
+
   void record(const TickRecord& tick);
+  /// A command of the operator as it arrived, and an answer that the pipeline does not know of.
+  void record(core::Stamp now, const core::OperatorCommand& command);
+  void record(core::Stamp now, const core::OperatorAnswer& answer);
 
   /// Writes the result and gives the folder its name. @return the finished folder.
   RunFolder finish(const RunResult& result);
 
  private:
   void write_sources(const RunRequest& request, const RunSources& sources) const;
+  void put(const msgs::Event& event);
+  void close_log();
+  template <typename Value>
+  void put(core::Stamp now, const Value& value) {
+    put(maker_.make(now, value));
+  }
 
   std::filesystem::path folder_;
   RunFolder partial_;
+  msgs::EventMaker maker_;
   msgs::RunLogWriter log_;
+  bool log_broken_ = false;
+  msgs::Event scene_;
+  std::vector<Listener> listeners_;
   msgs::StageTimes times_;  ///< Since the last status.
   std::int64_t ticks_ = 0;
   bool finished_ = false;

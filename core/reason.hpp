@@ -45,6 +45,12 @@ enum class Reason : std::uint8_t {
   bus_fault,
   imu_lost,
   not_homed,
+  // answers to an operator's command
+  wrong_run,
+  stale_command,
+  repeated_command,
+  not_now,
+  withdrawn,
   // ends by choice
   stopped_by_user,
   jump_count_reached,
@@ -87,6 +93,11 @@ constexpr std::string_view reason_code(Reason reason) {
     case Reason::bus_fault: return "bus_fault";
     case Reason::imu_lost: return "imu_lost";
     case Reason::not_homed: return "not_homed";
+    case Reason::wrong_run: return "wrong_run";
+    case Reason::stale_command: return "stale_command";
+    case Reason::repeated_command: return "repeated_command";
+    case Reason::not_now: return "not_now";
+    case Reason::withdrawn: return "withdrawn";
     case Reason::stopped_by_user: return "stopped_by_user";
     case Reason::jump_count_reached: return "jump_count_reached";
     case Reason::time_limit: return "time_limit";

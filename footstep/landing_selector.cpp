@@ -175,6 +175,12 @@ core::Refusal malformed(const ReachConfig& reach, const core::TargetOverride& wa
   const bool finite = std::isfinite(wanted.distance) && std::isfinite(wanted.lateral) &&
                       std::isfinite(wanted.yaw) && !std::isinf(wanted.height);
   if (!finite) return {Reason::target_malformed, "distance, lateral and yaw must be numbers"};
+  const double longest = longest_reach(reach);
+  if (wanted.distance > longest) {
+    return {Reason::out_of_reach, std::to_string(wanted.distance) +
+                                      " m is further than any jump, " + std::to_string(longest) +
+                                      " m"};
+  }
   if (std::abs(wanted.lateral) > reach.lateral_max || std::abs(wanted.yaw) > reach.yaw_max) {
     return {Reason::out_of_reach, "jumps to the side or with a turn are limited to " +
                                       std::to_string(reach.lateral_max) + " m and " +

@@ -60,6 +60,7 @@ Bytes encode(const Ack& value, const Tag& tag) {
   message.accepted = value.accepted;
   message.reason = wire::number_of(value.refusal.reason);
   message.sentence = value.refusal.sentence;
+  message.start_in = value.start_in;
   return wire::to_bytes(message);
 }
 
@@ -73,6 +74,7 @@ std::optional<Tagged<Ack>> decode(std::span<const std::uint8_t> bytes) {
   value.command_sequence = static_cast<std::uint64_t>(message->command_sequence);
   value.accepted = message->accepted != 0;
   value.refusal.sentence = message->sentence;
+  value.start_in = message->start_in;
   if (!wire::get_enum(message->reason, core::Reason::internal_error, value.refusal.reason)) {
     return std::nullopt;
   }

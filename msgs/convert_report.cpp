@@ -19,6 +19,7 @@ Bytes encode(const Status& value, const Tag& tag) {
   message.plan_time = value.control.plan_time;
   wire::put_wrenches(value.control.wrenches, message);
   message.deadline_misses = value.deadline_misses;
+  message.held = value.held;
   message.tick_ms = value.times.tick_ms;
   message.mpc_ms = value.times.mpc_ms;
   message.plan_ms = value.times.plan_ms;
@@ -39,6 +40,7 @@ std::optional<Tagged<Status>> decode(std::span<const std::uint8_t> bytes) {
   wire::get_wrenches(*message, control.wrenches);
   value.jump = message->jump;
   value.deadline_misses = message->deadline_misses;
+  value.held = message->held != 0;
   value.times = {message->tick_ms, message->mpc_ms, message->plan_ms, message->perception_ms,
                  message->estimator_ms};
   if (!wire::get_enum(message->phase, core::RobotPhase::fault, control.phase) ||

@@ -39,11 +39,12 @@ struct ModeCommand {
 
 /// HOP_ACK: the answer to either.
 struct Ack {
-  core::Stamp stamp;
+  core::Stamp stamp;                   ///< Of the tick that answered.
   std::string channel;                 ///< That the command came on.
   std::uint64_t command_sequence = 0;  ///< Of the command.
   bool accepted = false;
-  core::Refusal refusal;  ///< Set when not accepted.
+  core::Refusal refusal;         ///< Why not; when accepted its sentence says what follows.
+  double start_in = core::kNaN;  ///< Until the jump to the target starts [s]; NaN: not known, none.
 };
 
 /// Computing time of the stages whose work ended since the last status [ms]; NaN: none ended.
@@ -60,6 +61,7 @@ struct Status {
   core::ControlStatus control;  ///< Its stamp is that of the message.
   int jump = 0;                 ///< From 1; 0 before the first.
   int deadline_misses = 0;      ///< So far.
+  bool held = false;            ///< By the operator: it lands and stands.
   StageTimes times;
 };
 

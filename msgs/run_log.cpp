@@ -2,14 +2,12 @@
 
 #include <cstdio>
 #include <lcm/lcm-cpp.hpp>
-#include <map>
-#include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 #include "core/check.hpp"
-#include "msgs/channels.hpp"
+#include "msgs/dispatcher.hpp"
+#include "msgs/event.hpp"
 
 namespace hopscotch::msgs {
 
@@ -19,17 +17,16 @@ constexpr std::int64_t kNanosecondsPerMicrosecond = 1000;  // LCM logs count mic
 
 struct RunLogWriter::File {
   File(const std::filesystem::path& file, std::uint64_t id)
-      : name(file.string()), log(name, "w"), run_id(id) {
+      : name(file.string()), log(name, "w"), maker(id) {
     if (!log.good()) throw std::runtime_error("cannot write " + name);
   }
 
-  template <typename Value>
-  void append(core::Stamp now, std::string_view channel, const Value& value) {
-    Bytes bytes = encode(value, {++sequences[channel], run_id});
+  void append(const Event& source) {
+    Bytes bytes = source.bytes;  // the library's event points to bytes that it could change
     lcm::LogEvent event;
     event.eventnum = 0;  // the library numbers events itself
-    event.timestamp = now.nanoseconds / kNanosecondsPerMicrosecond;
-    event.channel = channel;
+    event.timestamp = source.now.nanoseconds / kNanosecondsPerMicrosecond;
+    event.channel = source.channel;
     event.datalen = static_cast<std::int32_t>(bytes.size());
     event.data = bytes.data();
     if (log.writeEvent(&event) != 0) throw std::runtime_error("cannot write " + name);
@@ -37,8 +34,7 @@ struct RunLogWriter::File {
 
   std::string name;
   lcm::LogFile log;
-  std::uint64_t run_id;
-  std::map<std::string_view, std::uint64_t> sequences;  // per channel; the names are static
+  EventMaker maker;
 };
 
 RunLogWriter::RunLogWriter(const std::filesystem::path& file, std::uint64_t run_id)
@@ -47,41 +43,44 @@ RunLogWriter::~RunLogWriter() = default;
 RunLogWriter::RunLogWriter(RunLogWriter&&) noexcept = default;
 RunLogWriter& RunLogWriter::operator=(RunLogWriter&&) noexcept = default;
 
+void RunLogWriter::write(const Event& event) {
+  file_->append(event);
+}
 void RunLogWriter::write(core::Stamp now, const core::SensorReadings& value) {
-  file_->append(now, kSensorsChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const core::RobotState& value) {
-  file_->append(now, kStateChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const core::JointCommand& value) {
-  file_->append(now, kCommandChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const core::JumpPlan& value) {
-  file_->append(now, kPlanChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const core::OneStepTerrain& value) {
-  file_->append(now, kTerrainChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const core::TargetChoice& value) {
-  file_->append(now, kTargetChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const TargetCommand& value) {
-  file_->append(now, kTargetCommandChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const ModeCommand& value) {
-  file_->append(now, kModeCommandChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const Ack& value) {
-  file_->append(now, kAckChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const Status& value) {
-  file_->append(now, kStatusChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const Truth& value) {
-  file_->append(now, kTruthChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 void RunLogWriter::write(core::Stamp now, const Scene& value) {
-  file_->append(now, kSceneChannel, value);
+  file_->append(file_->maker.make(now, value));
 }
 
 void RunLogWriter::close() {
@@ -92,64 +91,16 @@ void RunLogWriter::close() {
   if (!flushed) throw std::runtime_error("cannot write " + name);
 }
 
-namespace {
-
-/// Hands events of one channel over to their handler.
-class Dispatcher {
- public:
-  explicit Dispatcher(RunLogSummary& summary) : summary_(summary) {}
-
-  template <typename Value>
-  void on(std::string_view channel, const RunLogHandlers::Handler<Value>& handler) {
-    entries_[channel] = [this, &handler](core::Stamp written, std::span<const std::uint8_t> bytes) {
-      if (!handler) return;
-      if (const auto message = decode<Value>(bytes)) {
-        handler(written, *message);
-      } else {
-        ++summary_.malformed;
-      }
-    };
-  }
-
-  void take(const lcm::LogEvent& event) {
-    ++summary_.events;
-    const auto entry = entries_.find(event.channel);
-    if (entry == entries_.end()) {
-      ++summary_.unknown;
-      return;
-    }
-    entry->second(
-        {event.timestamp * kNanosecondsPerMicrosecond},
-        {static_cast<const std::uint8_t*>(event.data), static_cast<std::size_t>(event.datalen)});
-  }
-
- private:
-  RunLogSummary& summary_;
-  std::map<std::string_view, std::function<void(core::Stamp, std::span<const std::uint8_t>)>>
-      entries_;
-};
-
-}  // namespace
-
 RunLogSummary read_run_log(const std::filesystem::path& file, const RunLogHandlers& handlers) {
   lcm::LogFile log(file.string(), "r");
   if (!log.good()) throw std::runtime_error("cannot read " + file.string());
-  RunLogSummary summary;
-  Dispatcher dispatcher(summary);
-  dispatcher.on(kSensorsChannel, handlers.sensors);
-  dispatcher.on(kStateChannel, handlers.state);
-  dispatcher.on(kCommandChannel, handlers.command);
-  dispatcher.on(kPlanChannel, handlers.plan);
-  dispatcher.on(kTerrainChannel, handlers.terrain);
-  dispatcher.on(kTargetChannel, handlers.target);
-  dispatcher.on(kTargetCommandChannel, handlers.target_command);
-  dispatcher.on(kModeCommandChannel, handlers.mode_command);
-  dispatcher.on(kAckChannel, handlers.ack);
-  dispatcher.on(kStatusChannel, handlers.status);
-  dispatcher.on(kTruthChannel, handlers.truth);
-  dispatcher.on(kSceneChannel, handlers.scene);
-  while (const lcm::LogEvent* event = log.readNextEvent()) dispatcher.take(*event);
-  return summary;
+  Dispatcher dispatcher(handlers);
+  while (const lcm::LogEvent* event = log.readNextEvent()) {
+    dispatcher.take(
+        {event->timestamp * kNanosecondsPerMicrosecond}, event->channel,
+        {static_cast<const std::uint8_t*>(event->data), static_cast<std::size_t>(event->datalen)});
+  }
+  return dispatcher.summary();
 }
 
 }  // namespace hopscotch::msgs

@@ -8,6 +8,7 @@
 
 #include "core/time.hpp"
 #include "msgs/convert.hpp"
+#include "msgs/event.hpp"
 
 namespace hopscotch::msgs {
 
@@ -21,6 +22,9 @@ class RunLogWriter {
   RunLogWriter(RunLogWriter&&) noexcept;
   RunLogWriter& operator=(RunLogWriter&&) noexcept;
 
+  /// Appends a message that was made elsewhere.
+  /// @throws std::runtime_error if the disk refuses.
+  void write(const Event& event);
   /// Appends one message on the channel of its type.
   /// @param now Moment of writing; the value keeps its own stamp.
   /// @throws std::runtime_error if the disk refuses.

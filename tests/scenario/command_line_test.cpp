@@ -1,34 +1,18 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include "tests/scenario/program.hpp"
+
+namespace hopscotch {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Answer {
-  int status = -1;
-  std::string output;  ///< Standard output and standard error.
-};
-
-Answer call(const std::string& arguments) {
-  const std::string line = std::string(HOPSCOTCH_PROGRAM) + " " + arguments + " 2>&1";
-  std::FILE* pipe = popen(line.c_str(), "r");
-  if (pipe == nullptr) return {};
-  Answer answer;
-  std::array<char, 4096> block{};
-  for (std::size_t n = 0; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;) {
-    answer.output.append(block.data(), n);
-  }
-  const int status = pclose(pipe);
-  answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return answer;
-}
+using apps::Answer;
+using apps::call;
 
 class CommandLine : public ::testing::Test {
  protected:
@@ -49,7 +33,7 @@ class CommandLine : public ::testing::Test {
 };
 
 TEST_F(CommandLine, HelpIsThereForEachSubcommandWithAnExample) {
-  for (const char* command : {"run", "plan", "report", "doctor", "bench"}) {
+  for (const char* command : {"run", "plan", "target", "command", "report", "doctor", "bench"}) {
     const Answer answer = call(std::string(command) + " --help");
     EXPECT_EQ(answer.status, 0) << command;
     EXPECT_NE(answer.output.find("Example:"), std::string::npos) << command;
@@ -62,6 +46,10 @@ TEST_F(CommandLine, BadUsageIsStatusTwo) {
   EXPECT_EQ(call("run").status, 2);
   EXPECT_EQ(call("run x.yaml --perception eyes").status, 2);
   EXPECT_EQ(call("plan --distance far").status, 2);
+  EXPECT_EQ(call("target").status, 2);
+  EXPECT_EQ(call("target 0.3 --clear").status, 2);
+  EXPECT_EQ(call("target far").status, 2);
+  EXPECT_EQ(call("command dance").status, 2);
 }
 
 TEST_F(CommandLine, EstimatedStateIsRefusedUntilThereIsAnEstimator) {
@@ -132,3 +120,4 @@ TEST_F(CommandLine, ReportRefusesWhatIsNoRunFolder) {
 }
 
 }  // namespace
+}  // namespace hopscotch

@@ -200,12 +200,13 @@ TEST(Convert, OperatorMessagesSurviveTheWire) {
   EXPECT_EQ(mode.mode, core::ModeRequest::clear_fault);
   EXPECT_EQ(mode.goal_x, 2.5);
 
-  const Ack ack = round_trip(
-      Ack{{7}, "HOP_TARGET_CMD", 12, false, {core::Reason::out_of_reach, "0.90 m is too far"}});
+  const Ack ack = round_trip(Ack{
+      {7}, "HOP_TARGET_CMD", 12, false, {core::Reason::out_of_reach, "0.90 m is too far"}, 0.25});
   EXPECT_EQ(ack.channel, "HOP_TARGET_CMD");
   EXPECT_EQ(ack.command_sequence, 12U);
   EXPECT_FALSE(ack.accepted);
   EXPECT_EQ(ack.refusal.text(), "out_of_reach: 0.90 m is too far");
+  EXPECT_EQ(ack.start_in, 0.25);
 }
 
 TEST(Convert, StatusSurvivesTheWire) {

@@ -1,0 +1,78 @@
+#include "apps/live_run.hpp"
+
+#include <cstdlib>
+#include <utility>
+
+namespace hopscotch::apps {
+
+bool CommandBox::put(const core::OperatorCommand& command) {
+  const std::lock_guard lock(mutex_);
+  if (waiting_.size() >= kMost) return false;
+  waiting_.push_back(command);
+  return true;
+}
+
+std::vector<core::OperatorCommand> CommandBox::take_all() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(waiting_, {});
+}
+
+std::string live_url() {
+  const char* url = std::getenv("LCM_DEFAULT_URL");
+  return url != nullptr && *url != 0 ? url : std::string(msgs::kDefaultUrl);
+}
+
+core::OperatorCommand operator_command(const msgs::Tagged<msgs::TargetCommand>& message) {
+  return {.run_id = message.tag.run_id,
+          .sequence = message.tag.sequence,
+          .target = message.value.target,
+          .clear_target = !message.value.target.has_value()};
+}
+
+core::OperatorCommand operator_command(const msgs::Tagged<msgs::ModeCommand>& message) {
+  return {.run_id = message.tag.run_id,
+          .sequence = message.tag.sequence,
+          .mode = message.value.mode,
+          .goal_x = message.value.goal_x,
+          .target = {}};
+}
+
+msgs::Ack ack_of(core::Stamp now, const core::OperatorAnswer& answer) {
+  const bool mode = answer.command.mode != core::ModeRequest::none;
+  msgs::Ack ack;
+  ack.stamp = now;
+  ack.channel = mode ? msgs::kModeCommandChannel : msgs::kTargetCommandChannel;
+  ack.command_sequence = answer.command.sequence;
+  ack.accepted = answer.accepted();
+  ack.refusal = answer.refusal;
+  if (ack.accepted) ack.refusal.sentence = answer.remark;
+  ack.start_in = answer.start_in;
+  return ack;
+}
+
+namespace {
+
+msgs::RunLogHandlers into(CommandBox& box) {
+  msgs::RunLogHandlers handlers;
+  const auto put = [&box](core::Stamp, const auto& message) { box.put(operator_command(message)); };
+  handlers.target_command = put;
+  handlers.mode_command = put;
+  return handlers;
+}
+
+}  // namespace
+
+LiveRun::LiveRun(const std::string& url, CommandBox& box)
+    : commands_(url, into(box)), events_(url), publisher_(events_) {
+  receiver_ = std::thread([this] {
+    constexpr int kPatience = 100;  // [ms], then look whether the run is over
+    while (!closing_) commands_.receive(kPatience);
+  });
+}
+
+LiveRun::~LiveRun() {
+  closing_ = true;
+  receiver_.join();
+}
+
+}  // namespace hopscotch::apps
