@@ -9,7 +9,7 @@ CMAKE_ARGS ?=
 PREFIX ?= /usr/local
 
 PROGRAM := build/release/hopscotch
-BENCHES := planner mpc perception sim tick
+BENCHES := planner mpc perception estimator sim tick
 FUZZERS := $(basename $(notdir $(wildcard tests/fuzz/*_fuzz.cpp)))
 FUZZ_SECONDS ?= 60
 
@@ -34,10 +34,8 @@ packages:
 build: packages
 	@TARGETS=hopscotch scripts/build release $(CMAKE_ARGS)
 
-# The state estimator is not there yet, so the demo says that it runs on the simulator's true state.
 run: build
-	@echo "run: $(SCENARIO) with --state truth (the state estimator is not part of this version)"
-	$(PROGRAM) run $(SCENARIO) --state truth $(ARGS)
+	$(PROGRAM) run $(SCENARIO) $(ARGS)
 
 test: packages
 	@scripts/build release $(CMAKE_ARGS)

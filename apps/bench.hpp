@@ -31,6 +31,9 @@ struct BenchSetup {
                                                const std::filesystem::path& qps);
 /// Frames of the default camera while the robot crosses boxes: drawing, and frame to target.
 [[nodiscard]] nlohmann::ordered_json bench_perception(const BenchSetup& setup);
+/// The state estimator against the truth of simulated leaps on level ground.
+/// @param jumps How many; twenty make a run.
+[[nodiscard]] nlohmann::ordered_json bench_estimator(const BenchSetup& setup, int jumps);
 /// The control tick in a simulated run.
 [[nodiscard]] nlohmann::ordered_json bench_tick(const BenchSetup& setup);
 /// Simulation of a jump from standing to rest, on true terrain and with the camera.

@@ -11,14 +11,14 @@ using core::RobotPhase;
 JumpScorer::JumpScorer(const model::RobotParameters& robot, const sim::Terrain& terrain)
     : robot_(robot), terrain_(terrain) {}
 
-void JumpScorer::update(const sim::PlantTruth& truth, const core::ControlStatus& status,
-                        const core::JumpPlan& plan) {
+void JumpScorer::update(const sim::PlantTruth& truth, const core::RobotState& used,
+                        const core::ControlStatus& status, const core::JumpPlan& plan) {
   if (core::is_pushing_off(status.phase) && !core::is_pushing_off(phase_)) {
     judge(truth);
     begin(truth, plan);
   }
   phase_ = status.phase;
-  if (open_) follow(truth);
+  if (open_) follow(truth, used);
 }
 
 void JumpScorer::begin(const sim::PlantTruth& truth, const core::JumpPlan& plan) {
@@ -41,7 +41,7 @@ void JumpScorer::begin(const sim::PlantTruth& truth, const core::JumpPlan& plan)
   jumps_.push_back(jump);
 }
 
-void JumpScorer::follow(const sim::PlantTruth& truth) {
+void JumpScorer::follow(const sim::PlantTruth& truth, const core::RobotState& used) {
   JumpResult& jump = jumps_.back();
   peaks_.include(truth);
   jump.peak = {peaks_.torque_ratio, peaks_.speed_ratio, peaks_.power_ratio, peaks_.normal_force};
@@ -53,7 +53,7 @@ void JumpScorer::follow(const sim::PlantTruth& truth) {
     jump.takeoff.speed_x =
         v_WG.x() * std::cos(takeoff_.heading) + v_WG.y() * std::sin(takeoff_.heading);
     jump.takeoff.speed_z = v_WG.z();
-    jump.takeoff.estimate_error = 0.0;  // the controller runs on the true state
+    jump.takeoff.estimate_error = (model::composite_body(robot_, used).v_WG - v_WG).norm();
   }
   if (contact && liftoff_ && !touched_ && !core::is_pushing_off(phase_)) {
     touched_ = true;

@@ -20,9 +20,10 @@ class JumpScorer {
   /// @param terrain The true one.
   JumpScorer(const model::RobotParameters& robot, const sim::Terrain& terrain);
 
-  /// To be called every tick. @param plan The one being executed.
-  void update(const sim::PlantTruth& truth, const core::ControlStatus& status,
-              const core::JumpPlan& plan);
+  /// To be called every tick. @param used The state that the controller worked on.
+  /// @param plan The one being executed.
+  void update(const sim::PlantTruth& truth, const core::RobotState& used,
+              const core::ControlStatus& status, const core::JumpPlan& plan);
 
   /// The robot fell: ends the jump under way, if there is one.
   void fell(const core::Refusal& reason);
@@ -34,7 +35,7 @@ class JumpScorer {
 
  private:
   void begin(const sim::PlantTruth& truth, const core::JumpPlan& plan);
-  void follow(const sim::PlantTruth& truth);
+  void follow(const sim::PlantTruth& truth, const core::RobotState& used);
   void judge(const sim::PlantTruth& truth);
 
   model::RobotParameters robot_;

@@ -1,8 +1,11 @@
 #include "apps/lockstep_run.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/config_reader.hpp"
+#include "model/kinematics.hpp"
 #include "model/stand_posture.hpp"
 #include "sim/judge.hpp"
 #include "sim/terrain_builder.hpp"
@@ -34,14 +37,11 @@ Mission mission_of(const RunRequest& request) {
   if (request.scenario.goal.jumps) mission.jumps = *request.scenario.goal.jumps;
   const bool shorter = mission.jumps == 0 || request.jumps_max < mission.jumps;
   if (request.jumps_max > 0 && shorter) mission.jumps = request.jumps_max;
+  const sim::StartPlace& start = request.scenario.start;
+  const double ground =
+      request.scenario.true_terrain().top_at({start.x, 0.0}).value_or(0.0);  // checked on loading
+  mission.start = {{start.x, 0.0, ground + start.drop}, start.yaw};
   return mission;
-}
-
-Pipeline::TerrainOracle oracle_of(const RunRequest& request) {
-  if (request.eyes == Eyes::camera) return {};
-  return [seen = request.scenario.seen](const core::RobotState& state) {
-    return sim::seen_terrain_map(seen, state.p_WB.head<2>(), state.stamp);
-  };
 }
 
 std::optional<core::JumpPhase> jump_phase(RobotPhase phase) {
@@ -80,27 +80,43 @@ LockstepRun::LockstepRun(const RunRequest& request)
     : request_(request),
       plant_(plant_options(request)),
       camera_(request.scenario.camera, request.plant_robot, request.scenario.seen, request.seed),
-      pipeline_(request.config, request.robot, mission_of(request), oracle_of(request)),
+      pipeline_(request.config, request.robot, mission_of(request), oracle()),
       scorer_(request.plant_robot, request.scenario.true_terrain()) {
   result_.scenario = request.scenario.name;
   result_.seed = request.seed;
   result_.perception = request.eyes == Eyes::camera ? "camera" : "truth";
-  result_.state = "truth";
+  result_.state = request.state == StateSource::truth ? "truth" : "estimate";
   result_.position_error = 0.0;
   result_.pitch_error = 0.0;
+}
+
+/// What perfect perception would show: the seen terrain around where the robot really is, laid
+/// around where it believes to be.
+Pipeline::TerrainOracle LockstepRun::oracle() const {
+  if (request_.eyes == Eyes::camera) return {};
+  return [this](const core::RobotState& believed) {
+    const double yaw = model::rpy_from_rotation(believed.R_WB).z() -
+                       model::rpy_from_rotation(true_state_.R_WB).z();
+    const sim::Terrain around = sim::moved(request_.scenario.seen, true_state_.p_WB.head<2>(), yaw,
+                                           believed.p_WB - true_state_.p_WB);
+    return sim::seen_terrain_map(around, believed.p_WB.head<2>(), believed.stamp);
+  };
 }
 
 bool LockstepRun::step(const std::function<void(const TickRecord&)>& observe) {
   if (ended_) return false;
   const core::SensorReadings readings = plant_.exchange(command_);
   const sim::PlantTruth truth = plant_.truth();
+  true_state_ = truth.state;
   camera_.expose(truth.state);
-  command_ = pipeline_.tick(truth.state, camera_);
+  command_ = request_.state == StateSource::truth ? pipeline_.tick(truth.state, camera_)
+                                                  : pipeline_.tick(readings, camera_);
   plant_.notify_phase(jump_phase(pipeline_.status().phase));
-  scorer_.update(truth, pipeline_.status(), pipeline_.plan());
+  scorer_.update(truth, pipeline_.state(), pipeline_.status(), pipeline_.plan());
   collect_times();
+  compare(truth);
   if (observe) {
-    observe({readings, truth.state, command_, truth, pipeline_.status(), pipeline_.events(),
+    observe({readings, pipeline_.state(), command_, truth, pipeline_.status(), pipeline_.events(),
              pipeline_.plan(), static_cast<int>(scorer_.jumps().size()), pipeline_.held()});
   }
   judge(truth);
@@ -112,7 +128,17 @@ void LockstepRun::collect_times() {
   if (events.planning_ms) samples_.plan_ms.push_back(*events.planning_ms);
   if (events.mpc_ms) samples_.mpc_ms.push_back(*events.mpc_ms);
   if (events.perception_ms) samples_.perception_ms.push_back(*events.perception_ms);
+  if (events.estimator_ms) samples_.estimator_ms.push_back(*events.estimator_ms);
   samples_.tick_ms.push_back(events.tick_ms);
+}
+
+/// The largest errors of the state that was used. A fall is no measure of an estimator.
+void LockstepRun::compare(const sim::PlantTruth& truth) {
+  const core::RobotState& used = pipeline_.state();
+  const double pitch =
+      model::rpy_from_rotation(used.R_WB).y() - model::rpy_from_rotation(truth.state.R_WB).y();
+  result_.position_error = std::max(result_.position_error, (used.p_WB - truth.state.p_WB).norm());
+  result_.pitch_error = std::max(result_.pitch_error, std::abs(pitch));
 }
 
 void LockstepRun::judge(const sim::PlantTruth& truth) {
@@ -172,6 +198,7 @@ RunResult LockstepRun::result() const {
   result.timing.plan_ms = Percentiles::of(samples_.plan_ms);
   result.timing.mpc_ms = Percentiles::of(samples_.mpc_ms);
   result.timing.perception_ms = Percentiles::of(samples_.perception_ms);
+  result.timing.estimator_ms = Percentiles::of(samples_.estimator_ms);
   result.timing.tick_ms = Percentiles::of(samples_.tick_ms);
   return result;
 }

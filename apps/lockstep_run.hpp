@@ -18,6 +18,7 @@
 namespace hopscotch::apps {
 
 enum class Eyes : std::uint8_t { camera, truth };
+enum class StateSource : std::uint8_t { estimate, truth };
 
 /// One simulated run, as asked for.
 struct RunRequest {
@@ -28,6 +29,7 @@ struct RunRequest {
   std::uint64_t seed = 1;
   int jumps_max = 0;  ///< Stop after so many; 0: no limit.
   Eyes eyes = Eyes::camera;
+  StateSource state = StateSource::estimate;
 };
 
 /// Everything that happened in one tick, for logs and views.
@@ -43,7 +45,7 @@ struct TickRecord {
   bool held = false;           ///< By the operator.
 };
 
-/// Robot brain and simulated world in lock-step, one millisecond at a time, on the true state.
+/// Robot brain and simulated world in lock-step, one millisecond at a time.
 class LockstepRun {
  public:
   /// @throws core::ConfigError if the robot cannot stand as configured.
@@ -65,12 +67,15 @@ class LockstepRun {
   [[nodiscard]] core::Stamp now() const { return plant_.now(); }
   /// Wall times of the stages so far [ms].
   struct StageSamples {
-    std::vector<double> plan_ms, mpc_ms, perception_ms, tick_ms;
+    std::vector<double> plan_ms, mpc_ms, perception_ms, estimator_ms, tick_ms;
   };
+  [[nodiscard]] const Pipeline& pipeline() const { return pipeline_; }
   [[nodiscard]] const StageSamples& samples() const { return samples_; }
 
  private:
+  [[nodiscard]] Pipeline::TerrainOracle oracle() const;
   void collect_times();
+  void compare(const sim::PlantTruth& truth);
   void judge(const sim::PlantTruth& truth);
   void end(RunOutcome outcome, const core::Refusal& reason, const sim::PlantTruth& truth);
 
@@ -80,6 +85,7 @@ class LockstepRun {
   Pipeline pipeline_;
   JumpScorer scorer_;
   core::JointCommand command_;
+  core::RobotState true_state_;
   std::optional<core::Stamp> fault_since_;
   bool ended_ = false;
   RunResult result_;

@@ -20,6 +20,7 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
       robot_(robot),
       mission_(mission),
       oracle_(std::move(oracle)),
+      estimator_(config.control.estimator, robot, mission.start),
       mapper_(config.perception, robot),
       selector_(config.footstep, robot),
       planner_(config.planner, robot),
@@ -29,21 +30,45 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
   question_.reference.horizon = static_cast<std::size_t>(config.control.wrench_mpc.horizon);
 }
 
-// DepthFrame -> TerrainMap -> TargetChoice -> JumpPlan -> ContactWrenches -> JointCommand
+core::JointCommand Pipeline::tick(const core::SensorReadings& readings, core::DepthSource& camera) {
+  events_ = {};
+  if (control_ && readings.stamp <= state_.stamp) return command_;
+  const Stopwatch watch;
+  state_ = estimator_.update(
+      readings, control_ ? control_->expected_contact() : control::ContactExpectation::support);
+  events_.estimator_ms = watch.milliseconds();
+  run_stages(camera);
+  check_height();
+  return command_;
+}
+
 core::JointCommand Pipeline::tick(const core::RobotState& state, core::DepthSource& camera) {
   events_ = {};
-  if (!control_) start(state);
-  history_.add(state);
-  look(state.stamp, camera);
-  decide(state);
+  state_ = state;
+  run_stages(camera);
+  return command_;
+}
+
+// DepthFrame -> TerrainMap -> TargetChoice -> JumpPlan -> ContactWrenches -> JointCommand
+void Pipeline::run_stages(core::DepthSource& camera) {
+  if (!control_) start(state_);
+  history_.add(state_);
+  look(state_.stamp, camera);
+  decide(state_);
   const Stopwatch watch;
-  const core::JointCommand command = control_->tick(state);
+  command_ = control_->tick(state_);
   events_.tick_ms = watch.milliseconds();
-  balance(state.stamp);
-  watch_mission(state);
+  balance(state_.stamp);
+  watch_mission(state_);
   if (end_) desk_.withdraw_target("the run ended first");
   events_.answers = desk_.take_answers();
-  return command;
+}
+
+/// Once a landing has calmed down, the map says how high the soles stand now.
+void Pipeline::check_height() {
+  if (height_checked_ || state_.stamp.since(landed_) < config_.runtime.look_time) return;
+  height_checked_ = true;
+  estimator_.correct_height(control_->plan().target.p_WS.z() + control_->plan().target.height);
 }
 
 void Pipeline::start(const core::RobotState& state) {
@@ -201,6 +226,7 @@ void Pipeline::watch_mission(const core::RobotState& state) {
   if (control_->phase_changed() && status.phase == RobotPhase::landing) {
     landed_ = state.stamp;
     frames_since_landing_ = 0;
+    height_checked_ = false;
     ++jumps_done_;
   }
   const bool standing = status.phase == RobotPhase::stand || status.phase == RobotPhase::hold;

@@ -10,6 +10,7 @@
 #include "apps/program_config.hpp"
 #include "apps/state_history.hpp"
 #include "control/control_tick.hpp"
+#include "control/state_estimator.hpp"
 #include "control/wrench_mpc.hpp"
 #include "core/depth_source.hpp"
 #include "core/joint_command.hpp"
@@ -18,6 +19,7 @@
 #include "core/one_step_terrain.hpp"
 #include "core/result.hpp"
 #include "core/robot_state.hpp"
+#include "core/sensor_readings.hpp"
 #include "footstep/landing_selector.hpp"
 #include "model/robot_parameters.hpp"
 #include "perception/terrain_mapper.hpp"
@@ -29,6 +31,7 @@ namespace hopscotch::apps {
 struct Mission {
   double goal_x = core::kNaN;  ///< Both heels beyond, along x of W [m]; NaN: no such goal.
   int jumps = 0;               ///< So many jumps; 0: no limit.
+  control::StartPlace start;   ///< Where the robot is put down: places W.
 };
 
 /// Why the robot jumps no more.
@@ -43,6 +46,7 @@ struct PipelineEvents {
   std::optional<double> perception_ms;        ///< Wall time of the stage in this tick.
   std::optional<double> planning_ms;
   std::optional<double> mpc_ms;
+  std::optional<double> estimator_ms;
   double tick_ms = 0.0;
 };
 
@@ -57,7 +61,10 @@ class Pipeline {
   Pipeline(const ProgramConfig& config, const model::RobotParameters& robot, const Mission& mission,
            TerrainOracle oracle);
 
-  /// One millisecond: state and camera in, joint commands out.
+  /// One exchange: sensor readings and camera in, joint commands out. Readings with an old stamp
+  /// change nothing.
+  core::JointCommand tick(const core::SensorReadings& readings, core::DepthSource& camera);
+  /// The same on a state known from elsewhere, for `--state truth`.
   core::JointCommand tick(const core::RobotState& state, core::DepthSource& camera);
 
   /// A wish of the operator, between ticks. The answer is among the events of a later tick: of the
@@ -74,8 +81,13 @@ class Pipeline {
   /// The last phase before a fault, the present one without.
   [[nodiscard]] core::RobotPhase last_active_phase() const { return last_phase_; }
   [[nodiscard]] const PipelineEvents& events() const { return events_; }
+  /// The state that the last tick worked on.
+  [[nodiscard]] const core::RobotState& state() const { return state_; }
+  [[nodiscard]] const control::StateEstimator& estimator() const { return estimator_; }
 
  private:
+  void run_stages(core::DepthSource& camera);
+  void check_height();
   void look(core::Stamp now, core::DepthSource& camera);
   void decide(const core::RobotState& state);
   void balance(core::Stamp now);
@@ -97,6 +109,9 @@ class Pipeline {
   Mission mission_;
   TerrainOracle oracle_;
 
+  control::StateEstimator estimator_;
+  core::RobotState state_;
+  core::JointCommand command_;
   StateHistory history_;
   perception::TerrainMapper mapper_;
   footstep::LandingSelector selector_;
@@ -110,8 +125,9 @@ class Pipeline {
   control::MpcQuestion question_;
 
   core::Stamp last_mpc_;
-  core::Stamp landed_;       ///< Of the last touchdown, or of the start.
-  core::Stamp still_since_;  ///< Standing still since then.
+  bool height_checked_ = true;  ///< Since the last touchdown.
+  core::Stamp landed_;          ///< Of the last touchdown, or of the start.
+  core::Stamp still_since_;     ///< Standing still since then.
   std::optional<core::Stamp> refused_since_;
   footstep::LandingTask task_;
   OperatorDesk desk_;

@@ -66,7 +66,8 @@ std::uint64_t run_identity(const RunSources& sources, const RunRequest& request)
   mix(sources.robot);
   mix(program_version());
   mix(std::to_string(request.seed) + " " + std::to_string(request.jumps_max) + " " +
-      std::to_string(static_cast<int>(request.eyes)));
+      std::to_string(static_cast<int>(request.eyes)) + " " +
+      std::to_string(static_cast<int>(request.state)));
   return hash;
 }
 
@@ -142,6 +143,7 @@ void RunRecorder::record(const TickRecord& tick) {
   if (events.perception_ms) times_.perception_ms = *events.perception_ms;
   if (events.planning_ms) times_.plan_ms = *events.planning_ms;
   if (events.mpc_ms) times_.mpc_ms = *events.mpc_ms;
+  if (events.estimator_ms) times_.estimator_ms = *events.estimator_ms;
   times_.tick_ms = events.tick_ms;
   if (ticks_++ % kTicksPerRecord != 0) return;
   put(now, tick.state);

@@ -37,6 +37,7 @@ ControlConfig ControlConfig::load(const core::ConfigReader& section, double mpc_
   config.anchor_time = section.number("anchor_time_s", Range::closed(0.0, 1.0));
   config.settle_time = section.number("settle_time_s", Range::above(0.0, 3.0));
   config.wrench_mpc = WrenchMpcConfig::load(section.section("wrench_mpc"));
+  config.estimator = EstimatorConfig::load(section.section("estimator"));
   section.finish();
   return config;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "control/estimator_config.hpp"
 #include "control/wrench_mpc.hpp"
 #include "core/config_reader.hpp"
 #include "core/robot_layout.hpp"
@@ -41,6 +42,7 @@ struct ControlConfig {
   double settle_time = 0.0;  ///< From anywhere to a stand: switching on, calling a jump off [s].
 
   WrenchMpcConfig wrench_mpc;
+  EstimatorConfig estimator;
 
   /// @param mpc_delay The runtime's declared latency of the MPC [s].
   static ControlConfig load(const core::ConfigReader& section, double mpc_delay);

@@ -188,6 +188,20 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
   }
 }
 
+ContactExpectation ControlTick::expected_contact() const noexcept {
+  const double time = status_.plan_time;
+  if (core::is_pushing_off(phase())) {
+    const double leave_time = config_.estimator.contact.leave_time;
+    return time < plan_.liftoff_time - leave_time ? ContactExpectation::support
+                                                  : ContactExpectation::leaving;
+  }
+  if (phase() != RobotPhase::flight) return ContactExpectation::support;
+  const double flight = plan_.touchdown_time - plan_.liftoff_time;
+  return time < plan_.liftoff_time + config_.supervisor.touchdown_from * flight
+             ? ContactExpectation::airborne
+             : ContactExpectation::touchdown;
+}
+
 bool ControlTick::answer_is_fresh() const noexcept {
   return answer_.status == MpcStatus::solved && answer_.stamp >= touchdown_ &&
          state_.stamp.since(answer_.stamp) <= config_.wrench_age_max;

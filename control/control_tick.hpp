@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "control/contact_detector.hpp"
 #include "control/control_config.hpp"
 #include "control/jump_supervisor.hpp"
 #include "control/plan_follower.hpp"
@@ -69,6 +70,8 @@ class ControlTick {
   }
   /// True in the tick that began a phase: the last answer belongs to another one, solve at once.
   [[nodiscard]] bool phase_changed() const { return phase_changed_; }
+  /// What the feet should be doing at the next tick: for the state estimator.
+  [[nodiscard]] ContactExpectation expected_contact() const noexcept;
   /// How the robot will stand when the present plan has ended: its last posture on the feet's
   /// present places, at rest. The next jump is planned from here.
   [[nodiscard]] core::RobotState rest_state() const noexcept;

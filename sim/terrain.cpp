@@ -1,5 +1,6 @@
 #include "sim/terrain.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -77,6 +78,18 @@ double Slab::lowest() const {
 
 double Slab::highest() const {
   return top + std::max(0.0, 2.0 * half_size.x() * std::tan(slope));
+}
+
+Terrain moved(const Terrain& terrain, const Eigen::Vector2d& pivot, double yaw,
+              const Eigen::Vector3d& shift) {
+  Terrain result = terrain;
+  result.pit_depth -= shift.z();
+  for (Slab& slab : result.slabs) {
+    slab.centre = pivot + Eigen::Rotation2Dd(yaw) * (slab.centre - pivot) + shift.head<2>();
+    slab.yaw += yaw;
+    slab.top += shift.z();
+  }
+  return result;
 }
 
 bool overlap(const Slab& a, const Slab& b) {

@@ -44,6 +44,11 @@ struct Terrain {
   [[nodiscard]] std::optional<double> top_at(const Eigen::Vector2d& p_W) const;
 };
 
+/// The terrain turned by `yaw` [rad] about the vertical through `pivot` and then shifted [m]: how
+/// it lies around someone whose belief of place and heading is off by that.
+[[nodiscard]] Terrain moved(const Terrain& terrain, const Eigen::Vector2d& pivot, double yaw,
+                            const Eigen::Vector3d& shift);
+
 /// How far a point on a slab is from where support ends in one direction.
 /// @param from       A supported point of the plane, in W [m].
 /// @param direction  Unit vector in the plane of W.

@@ -52,12 +52,6 @@ TEST_F(CommandLine, BadUsageIsStatusTwo) {
   EXPECT_EQ(call("command dance").status, 2);
 }
 
-TEST_F(CommandLine, EstimatedStateIsRefusedUntilThereIsAnEstimator) {
-  const Answer answer = call("run " HOPSCOTCH_SOURCE_DIR "/config/scenarios/flat-leaps.yaml");
-  EXPECT_EQ(answer.status, 3);
-  EXPECT_NE(answer.output.find("--state truth"), std::string::npos);
-}
-
 TEST_F(CommandLine, ABrokenScenarioNamesFileLineAndRuleAndWritesNothing) {
   const fs::path scenario = write("broken.yaml",
                                   "name: broken\n"
@@ -66,7 +60,7 @@ TEST_F(CommandLine, ABrokenScenarioNamesFileLineAndRuleAndWritesNothing) {
                                   "goal: {x_m: 1.0}\n"
                                   "frction: 0.5\n");
   const fs::path out = folder_ / "out";
-  const Answer answer = call("run " + scenario.string() + " --state truth --out " + out.string());
+  const Answer answer = call("run " + scenario.string() + " --out " + out.string());
   EXPECT_EQ(answer.status, 2);
   EXPECT_NE(answer.output.find("broken.yaml:5"), std::string::npos) << answer.output;
   EXPECT_NE(answer.output.find("frction"), std::string::npos);
@@ -74,7 +68,7 @@ TEST_F(CommandLine, ABrokenScenarioNamesFileLineAndRuleAndWritesNothing) {
 }
 
 TEST_F(CommandLine, AMissingFileIsNamed) {
-  const Answer answer = call("run nowhere.yaml --state truth");
+  const Answer answer = call("run nowhere.yaml");
   EXPECT_EQ(answer.status, 2);
   EXPECT_NE(answer.output.find("nowhere.yaml"), std::string::npos);
 }
@@ -86,8 +80,7 @@ TEST_F(CommandLine, ARunWritesAWholeFolder) {
                                   "  - {x_m: [-1.0, 3.0]}\n"
                                   "goal: {jumps: 1}\n");
   const fs::path out = folder_ / "out";
-  const Answer answer =
-      call("run " + scenario.string() + " --state truth --seed 5 --out " + out.string());
+  const Answer answer = call("run " + scenario.string() + " --seed 5 --out " + out.string());
   EXPECT_EQ(answer.status, 0) << answer.output;
   for (const char* file : {"result.json", "run.lcm", "config.yaml", "report.html"}) {
     EXPECT_GT(fs::file_size(out / file), 0U) << file;
