@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "apps/command_campaign.hpp"
 #include "apps/commands.hpp"
 #include "apps/installation.hpp"
 #include "core/config_reader.hpp"
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
   hopscotch::apps::add_plan_command(app, action);
   hopscotch::apps::add_target_command(app, action);
   hopscotch::apps::add_command_command(app, action);
+  hopscotch::apps::add_campaign_command(app, action);
   hopscotch::apps::add_report_command(app, action);
   hopscotch::apps::add_doctor_command(app, action);
   hopscotch::apps::add_bench_command(app, action);

@@ -10,6 +10,8 @@
 #include <sstream>
 #include <utility>
 
+#include "core/config_shape.hpp"
+
 namespace hopscotch::core {
 
 struct ConfigReader::Node {
@@ -326,6 +328,22 @@ void ConfigReader::finish() const {
 
 std::string ConfigReader::place() const {
   return at_line(node_->file, node_->yaml.Mark());
+}
+
+ConfigValue value_at(std::string_view text, const std::vector<std::string>& path) {
+  YAML::Node node = parse_mapping(std::string(text), "text");
+  for (const std::string& key : path) {
+    if (!node.IsMap()) return {};
+    node.reset(std::as_const(node)[key]);  // assignment would write into the tree
+    if (!node.IsDefined()) return {};
+  }
+  if (node.IsMap()) return {.shape = ConfigShape::mapping, .words = {}};
+  if (!node.IsSequence()) return {.shape = ConfigShape::scalar, .words = {}};
+  ConfigValue value{.shape = ConfigShape::list, .words = {}};
+  for (const YAML::Node& item : node) {
+    value.words.push_back(item.IsScalar() ? item.Scalar() : std::string());
+  }
+  return value;
 }
 
 }  // namespace hopscotch::core

@@ -33,7 +33,8 @@ class CommandLine : public ::testing::Test {
 };
 
 TEST_F(CommandLine, HelpIsThereForEachSubcommandWithAnExample) {
-  for (const char* command : {"run", "plan", "target", "command", "report", "doctor", "bench"}) {
+  for (const char* command :
+       {"run", "plan", "campaign", "target", "command", "report", "doctor", "bench"}) {
     const Answer answer = call(std::string(command) + " --help");
     EXPECT_EQ(answer.status, 0) << command;
     EXPECT_NE(answer.output.find("Example:"), std::string::npos) << command;
