@@ -25,7 +25,7 @@ struct PlanOptions {
   double friction = core::kNaN;
   std::string robot = "hector";
   std::string model = "variable";
-  std::string solver = "ipopt";
+  std::string solver = "chain";
   int repeat = 1;
   bool cold = false;
   bool json = false;
@@ -34,7 +34,7 @@ struct PlanOptions {
 };
 
 void say_plan(const core::JumpPlan& plan, const PlanContext& context) {
-  std::printf("%.2f m ahead, %+.2f m: %s after %d iterations, %.0f ms (median of %d)\n",
+  std::printf("%.2f m ahead, %+.2f m: %s after %d iterations, %.1f ms (median of %d)\n",
               plan.target.distance, plan.target.height,
               std::string(core::plan_status_name(plan.status)).c_str(), plan.iterations,
               context.solve_ms.p50, context.solves);
@@ -57,7 +57,8 @@ planner::PlanRequest request_of(const PlanOptions& options, const ProgramConfig&
   return {.start = planner::standing_state(*pose),
           .target = planner::step_target(step, robot),
           .final_posture = config.stand_posture,
-          .guess = options.cold ? planner::StartGuess::kinematic : planner::StartGuess::previous};
+          .guess = options.cold ? planner::StartGuess::kinematic : planner::StartGuess::previous,
+          .solver = options.solver == "ipopt" ? planner::Solver::ipopt : planner::Solver::chain};
 }
 
 ExitStatus plan(const PlanOptions& options) {
@@ -109,7 +110,7 @@ void add_plan_command(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"variable"}))
       ->capture_default_str();
   command->add_option("--solver", options->solver, "Solver")
-      ->check(CLI::IsMember({"ipopt"}))
+      ->check(CLI::IsMember({"chain", "ipopt"}))
       ->capture_default_str();
   command->add_option("--repeat", options->repeat, "Solve so often")->check(CLI::Range(1, 10000));
   command->add_flag("--cold", options->cold, "Each solve from the closed-form first guess");

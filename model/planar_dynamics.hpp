@@ -140,7 +140,6 @@ class PlanarDynamics {
   /// M e_j / M: share of link j in the position of the whole-body CoM, in link j's frame [m].
   [[nodiscard]] PlanarVector<double> com_share(std::size_t link) const { return com_share_[link]; }
 
- private:
   /// Real and imaginary parts of C.
   struct Coupling {
     std::array<std::array<double, kPlanarLinks>, kPlanarLinks> real{};
@@ -152,7 +151,12 @@ class PlanarDynamics {
     void add_forces(std::size_t first, const LinkArray<T>& a, const LinkArray<T>& w,
                     const LinkArray<T>& acceleration, LinkArray<T>& force) const;
   };
+  /// C with the ankle axis fixed.
+  [[nodiscard]] const Coupling& pinned() const { return pinned_; }
+  /// C about the common CoM.
+  [[nodiscard]] const Coupling& free() const { return free_; }
 
+ private:
   /// Joint torques from the forces conjugate to the pitches, with armature and damping.
   template <typename T>
   [[nodiscard]] PlanarJoints<T> joint_torques(const LinkArray<T>& force, const LinkArray<T>& w,

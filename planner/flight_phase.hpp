@@ -132,6 +132,14 @@ struct ClearanceLaw {
   }
 };
 
+/// The laws of the flight and where they find their variables; `knot` counts from lift-off.
+[[nodiscard]] FlightLaw flight_law(const PlanarModel& model, const PlanarTask& task);
+[[nodiscard]] LiftoffLaw liftoff_law(const PlanarModel& model);
+[[nodiscard]] ClearanceLaw clearance_law(const PlanarModel& model, const PlanarTask& task,
+                                         int knot);
+[[nodiscard]] std::array<int, 11> liftoff_variables(const DecisionLayout& layout);
+[[nodiscard]] std::array<int, 9> clearance_variables(const DecisionLayout& layout, int knot);
+
 /// Eq. (11): steps and knots of the flight, with lift-off; touchdown belongs to the landing.
 void add_flight(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
                 BlockList& blocks);

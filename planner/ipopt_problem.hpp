@@ -1,23 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 
 #include "planner/decision_bounds.hpp"
 #include "planner/nonlinear_program.hpp"
+#include "planner/solve_outcome.hpp"
 
 namespace hopscotch::planner {
-
-enum class SolveStatus : std::uint8_t { solved, iteration_limit, infeasible, failed };
 
 /// Where the solver starts.
 struct StartPoint {
   Eigen::VectorXd x;
-};
-
-struct SolveOptions {
-  int iterations_max = 0;
-  double tolerance = 0.0;  ///< Of the scaled optimality conditions.
 };
 
 struct SolveOutcome {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "planner/certificate.hpp"
+#include "planner/chain_solver.hpp"
 #include "planner/ipopt_problem.hpp"
 #include "planner/landing_phase.hpp"
 #include "planner/lift_to_3d.hpp"
@@ -68,11 +69,35 @@ bool acceptable(const SolveOutcome& outcome) {
 struct JumpPlanner::Memory {
   PlanarModel model;
   DecisionLayout layout;
-  Eigen::VectorXd previous;  ///< Decision vector of the last solved jump; empty before the first.
+  ChainSolver chain;
+  bool chain_is_solved = false;  ///< The chain solver holds a certified jump with its multipliers.
+  Eigen::VectorXd previous;      ///< The last certified jump; empty before the first.
 
   Memory(const model::RobotParameters& robot, const PlannerConfig& config)
-      : model(robot, config), layout(config.steps) {}
+      : model(robot, config), layout(config.steps), chain(layout) {}
+
+  [[nodiscard]] SolveOutcome solve(const PlanarTask& task, Solver solver, StartGuess guess);
 };
+
+SolveOutcome JumpPlanner::Memory::solve(const PlanarTask& task, Solver solver, StartGuess guess) {
+  const bool warm = guess == StartGuess::previous;
+  const SolveOptions options{model.config.iterations_max, model.config.tolerance};
+  if (solver == Solver::ipopt) {
+    const StartPoint start{warm ? previous : kinematic_guess(model, task, layout)};
+    return solve_with_ipopt(build_program(model, task, layout),
+                            decision_bounds(model, task, layout), decision_sizes(layout), start,
+                            options);
+  }
+  const ChainProblem problem(model, task, layout);
+  ChainOutcome solved;
+  if (warm && chain_is_solved) {
+    solved = chain.solve_again(problem, options);
+  } else {
+    solved = chain.solve(problem, warm ? previous : kinematic_guess(model, task, layout), options);
+  }
+  chain_is_solved = false;
+  return {solved.status, solved.iterations, solved.violation, solved.cost, chain.x()};
+}
 
 JumpPlanner::JumpPlanner(const PlannerConfig& config, const model::RobotParameters& robot)
     : memory_(std::make_unique<Memory>(robot, config)) {
@@ -95,10 +120,8 @@ core::Result<core::JumpPlan> JumpPlanner::plan(const PlanRequest& request) {
   if (!task) return task.error();
 
   const bool warm = request.guess == StartGuess::previous && memory_->previous.size() > 0;
-  const StartPoint start{warm ? memory_->previous : kinematic_guess(model, *task, layout)};
-  const SolveOutcome outcome = solve_with_ipopt(
-      build_program(model, *task, layout), decision_bounds(model, *task, layout),
-      decision_sizes(layout), start, {model.config.iterations_max, model.config.tolerance});
+  const SolveOutcome outcome =
+      memory_->solve(*task, request.solver, warm ? StartGuess::previous : StartGuess::kinematic);
   if (!acceptable(outcome)) return infeasible(outcome, *task);
 
   const PlanarMotion motion = motion_from_decision(model, *task, layout, outcome.x);
@@ -109,6 +132,7 @@ core::Result<core::JumpPlan> JumpPlanner::plan(const PlanRequest& request) {
     return not_certified(certified.certificate);
   }
   memory_->previous = outcome.x;
+  memory_->chain_is_solved = request.solver == Solver::chain;
 
   core::JumpPlan plan;
   plan.id = request.id;

@@ -19,18 +19,26 @@ enum class StartGuess : std::uint8_t {
   previous,   ///< The planner's last solved jump where there is one, else kinematic.
 };
 
+/// Who solves the nonlinear program.
+enum class Solver : std::uint8_t {
+  chain,  ///< Own interior point on the chain of steps: fast, on line.
+  ipopt,  ///< Ipopt with MUMPS on the same problem: the reference.
+};
+
 struct PlanRequest {
   core::RobotState start;      ///< Feet flat on the ground at the origin of the target's frame S.
   core::LandingTarget target;  ///< Where to, and the terrain in between.
   model::StandPosture final_posture;  ///< At rest, at the target.
   std::uint64_t id = 0;
   StartGuess guess = StartGuess::kinematic;
+  Solver solver = Solver::chain;
 };
 
 /// Plans one jump: takeoff, flight and landing as one nonlinear program over the exact sagittal
-/// dynamics (eqs. (2)-(12) with the readings of docs/decisions), solved by Ipopt, certified against
-/// the physical limits on a 1 ms grid and lifted to 3-D. Deterministic: stops on iterations, not on
-/// time. Not for the control tick (0.1 s, allocates). One instance per thread.
+/// dynamics (eqs. (2)-(12) with the readings of docs/decisions), solved by an interior-point
+/// method, certified against the physical limits on a 1 ms grid and lifted to 3-D. Deterministic:
+/// stops on iterations, not on time. Not for the control tick (milliseconds, allocates). One
+/// instance per thread.
 class JumpPlanner {
  public:
   /// @throws std::invalid_argument if the configured steps do not fit into a JumpPlan.
@@ -42,7 +50,7 @@ class JumpPlanner {
   /// @return a plan that ends at rest, or why there is none: target_malformed (not finite, beside
   ///         the jump line, terrain unknown on the way), out_of_reach (final posture impossible),
   ///         bad_sensor_value (start not finite), plan_infeasible (with iterations and violation),
-  ///         certificate_refused (with the binding limit). `iterations` counts Ipopt's.
+  ///         certificate_refused (with the binding limit). `iterations` counts the solver's.
   core::Result<core::JumpPlan> plan(const PlanRequest& request);
 
  private:

@@ -56,6 +56,11 @@ struct TouchdownLaw {
   }
 };
 
+/// The laws of the landing and where touchdown finds its variables.
+[[nodiscard]] StanceLaw landing_law(const PlanarModel& model, const PlanarTask& task, int k);
+[[nodiscard]] TouchdownLaw touchdown_law(const PlanarModel& model, const PlanarTask& task);
+[[nodiscard]] std::array<int, 15> touchdown_variables(const DecisionLayout& layout);
+
 /// Eq. (12): touchdown and the way to rest, by the same exact chain as the takeoff in place of the
 /// single rigid body of eqs. (5)-(6).
 void add_landing(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,

@@ -68,13 +68,14 @@ struct MotorRows {
 /// foot in its physical sense, all divided by the robot's weight.
 struct GroundRows {
   static constexpr int kRows = 5;
-  double weight = 0.0;            ///< M g [N].
-  double friction = 0.0;          ///< mu, with reserve.
-  double normal_force_min = 0.0;  ///< [N]
-  double normal_force_max = 0.0;  ///< [N]
-  double toe = 0.0;               ///< Foremost centre of pressure ahead of the ankle axis [m].
-  double heel = 0.0;              ///< Rearmost centre of pressure behind the ankle axis [m].
-  double sole_height = 0.0;       ///< Ankle axis above the sole [m].
+  static constexpr double kFootLength = 0.1;  ///< Brings the moment rows to the size of the others.
+  double weight = 0.0;                        ///< M g [N].
+  double friction = 0.0;                      ///< mu, with reserve.
+  double normal_force_min = 0.0;              ///< [N]
+  double normal_force_max = 0.0;              ///< [N]
+  double toe = 0.0;          ///< Foremost centre of pressure ahead of the ankle axis [m].
+  double heel = 0.0;         ///< Rearmost centre of pressure behind the ankle axis [m].
+  double sole_height = 0.0;  ///< Ankle axis above the sole [m].
 
   template <typename T>
   void write(const model::StanceLoads<T>& loads, T* rows) const {
@@ -89,9 +90,6 @@ struct GroundRows {
     rows[4] = (heel / kFootLength) * fz - pressure;
   }
   void bounds(std::span<double> lower, std::span<double> upper) const;
-
- private:
-  static constexpr double kFootLength = 0.1;  ///< Brings the moment rows to the size of the others.
 };
 [[nodiscard]] GroundRows ground_rows(const model::PlanarChain& chain, const PlannerConfig& config,
                                      double cop_margin);

@@ -20,16 +20,28 @@ ShankRange shank_range(const PlanarModel& model, const SmoothTerrain& terrain,
   return range;
 }
 
-void add_smoothness(const PlanarModel& model, const DecisionLayout& layout, BlockList& blocks) {
+StanceLaw takeoff_law(const PlanarModel& model, const PlanarTask& task, int k) {
   const PlannerConfig& config = model.config;
-  const int steps = layout.steps().takeoff;
+  return {model.dynamics,
+          {motor_limits(model.robot, config.reserves)},
+          ground_rows(model.dynamics.chain(), config, config.takeoff_cop_margin),
+          StepObjective(config.takeoff_cost, config.takeoff_step(k) / config.takeoff_time(),
+                        task.final_posture)};
+}
+
+SmoothnessLaw smoothness_law(const PlannerConfig& config, int k) {
+  const int steps = config.steps.takeoff;
   const double mean_step = config.takeoff_time() / steps;
-  for (int k = 0; k + 2 <= steps; ++k) {
-    const double first = config.takeoff_step(k);
-    const double second = config.takeoff_step(k + 1);
-    // The integral of the squared rate of change of acceleration, for equal steps that of `change`.
-    const double weight = config.smoothness_cost / steps * mean_step / (0.5 * (first + second));
-    const SmoothnessLaw smoothness{weight, first, second};
+  const double first = config.takeoff_step(k);
+  const double second = config.takeoff_step(k + 1);
+  // The integral of the squared rate of change of acceleration, for equal steps that of `change`.
+  const double weight = config.smoothness_cost / steps * mean_step / (0.5 * (first + second));
+  return {weight, first, second};
+}
+
+void add_smoothness(const PlanarModel& model, const DecisionLayout& layout, BlockList& blocks) {
+  for (int k = 0; k + 2 <= layout.steps().takeoff; ++k) {
+    const SmoothnessLaw smoothness = smoothness_law(model.config, k);
     for (int d = 0; d < kStanceDof; ++d) {
       const std::array<int, 3> rates{layout.takeoff(k) + kStanceDof + d,
                                      layout.takeoff(k + 1) + kStanceDof + d,
@@ -41,20 +53,13 @@ void add_smoothness(const PlanarModel& model, const DecisionLayout& layout, Bloc
 
 void add_takeoff(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
                  BlockList& blocks) {
-  const PlannerConfig& config = model.config;
-  const int steps = layout.steps().takeoff;
-  const MotorRows motors{motor_limits(model.robot, config.reserves)};
-  const GroundRows ground = ground_rows(model.dynamics.chain(), config, config.takeoff_cop_margin);
-  const JointRows<kStanceDof> joints = joint_rows<kStanceDof>(model.robot, config);
+  const JointRows<kStanceDof> joints = joint_rows<kStanceDof>(model.robot, model.config);
   using Step = StepBlock<StanceLaw, kStanceDof, StepLength::fixed>;
   using Knot = KnotBlock<JointRows<kStanceDof>, 2 * kStanceDof>;
-  for (int k = 0; k < steps; ++k) {
+  for (int k = 0; k < layout.steps().takeoff; ++k) {
     const std::array<int, 12> ends = layout.takeoff_step_variables(k);
-    const double step = config.takeoff_step(k);
-    const StanceLaw law{
-        model.dynamics, motors, ground,
-        StepObjective(config.takeoff_cost, step / config.takeoff_time(), task.final_posture)};
-    blocks.push_back(std::make_unique<Step>(law, ends, step));
+    blocks.push_back(
+        std::make_unique<Step>(takeoff_law(model, task, k), ends, model.config.takeoff_step(k)));
     std::array<int, 6> after{};
     std::copy(ends.begin() + 6, ends.end(), after.begin());
     blocks.push_back(std::make_unique<Knot>(joints, after));

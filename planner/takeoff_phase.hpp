@@ -54,6 +54,12 @@ struct ShankRange {
 [[nodiscard]] ShankRange shank_range(const PlanarModel& model, const SmoothTerrain& terrain,
                                      const model::PlanarVector<double>& ankle);
 
+/// The law of takeoff step `k`.
+[[nodiscard]] StanceLaw takeoff_law(const PlanarModel& model, const PlanarTask& task, int k);
+
+/// The smoothness of takeoff steps `k` and `k` + 1.
+[[nodiscard]] SmoothnessLaw smoothness_law(const PlannerConfig& config, int k);
+
 /// Cost on the change of acceleration between takeoff steps.
 void add_smoothness(const PlanarModel& model, const DecisionLayout& layout, BlockList& blocks);
 

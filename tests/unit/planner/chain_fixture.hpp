@@ -1,0 +1,123 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+#include "planner/chain_problem.hpp"
+#include "planner/nonlinear_program.hpp"
+#include "planner/warm_start.hpp"
+#include "tests/unit/planner/planner_fixture.hpp"
+
+namespace hopscotch::planner::testing_support {
+
+inline NonlinearProgram program_of(const PlanarModel& model, const PlanarTask& task,
+                                   const DecisionLayout& layout) {
+  BlockList blocks;
+  add_takeoff(model, task, layout, blocks);
+  add_flight(model, task, layout, blocks);
+  add_landing(model, task, layout, blocks);
+  return {layout.size(), std::move(blocks)};
+}
+
+/// Where a row of the program lives in the arrays of the chain.
+struct RowPlace {
+  bool is_equality = false;
+  int at = 0;
+};
+
+/// The rows of the blocks in their order; those without bounds are not part of the program.
+class RowPlaces {
+ public:
+  explicit RowPlaces(const ChainProblem& problem) : problem_(problem) {
+    const ChainLayout& layout = problem.layout();
+    const StepCounts& steps = layout.steps();
+    for (int k = 0; k < steps.takeoff; ++k) {
+      equalities(layout.takeoff_gap(k), 3);
+      slots(layout.takeoff_rows(k), ChainLayout::kStanceRows);
+      slots(layout.takeoff_joints(k), 3);
+    }
+    equalities(layout.liftoff(), 5);
+    for (int k = 0; k < steps.flight; ++k) {
+      equalities(layout.flight_gap(k), 4);
+      slots(layout.flight_rows(k), ChainLayout::kFlightRows);
+      slots(layout.flight_joints(k), 4);
+      equalities(layout.momentum(k), 1);
+      if (k + 1 < steps.flight) slots(layout.clearance(k), 3);
+    }
+    equalities(layout.touchdown(), 5);
+    slots(layout.touchdown_speeds(), 2);
+    for (int k = 0; k < steps.landing; ++k) {
+      equalities(layout.landing_gap(k), 3);
+      slots(layout.landing_rows(k), ChainLayout::kStanceRows);
+      slots(layout.landing_joints(k), 3);
+    }
+  }
+  [[nodiscard]] const std::vector<RowPlace>& list() const { return list_; }
+
+  /// Multipliers or weights of the program's rows from those of the chain.
+  [[nodiscard]] Eigen::VectorXd gather(const Eigen::VectorXd& slots,
+                                       const Eigen::VectorXd& equalities) const {
+    Eigen::VectorXd out(static_cast<Eigen::Index>(list_.size()));
+    for (std::size_t r = 0; r < list_.size(); ++r) {
+      out(static_cast<Eigen::Index>(r)) =
+          list_[r].is_equality ? equalities(list_[r].at) : slots(list_[r].at);
+    }
+    return out;
+  }
+
+ private:
+  void equalities(int first, int count) {
+    for (int i = 0; i < count; ++i) list_.push_back({true, first + i});
+  }
+  void slots(int first, int count) {
+    for (int i = first; i < first + count; ++i) {
+      if (problem_.lower()(i) > -kUnbounded || problem_.upper()(i) < kUnbounded) {
+        list_.push_back({false, i});
+      }
+    }
+  }
+  const ChainProblem& problem_;
+  std::vector<RowPlace> list_;
+};
+
+/// Two jumps, each near its guess but off it, as blocks and as a chain.
+class ChainTest : public testing::TestWithParam<std::pair<double, double>> {
+ protected:
+  [[nodiscard]] Eigen::VectorXd noisy_point(unsigned seed) const {
+    Eigen::VectorXd x = kinematic_guess(model_, task_, layout_);
+    const std::vector<double> noise = random_point(static_cast<std::size_t>(x.size()) + 1, seed);
+    const Eigen::VectorXd sizes = decision_sizes(layout_);
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      x(i) += 0.05 * sizes(i) * noise[static_cast<std::size_t>(i)];
+      if (problem_.is_fixed(static_cast<int>(i))) x(i) = problem_.bounds().lower(i);
+    }
+    x.conservativeResize(x.size() + 1);
+    x(x.size() - 1) = 0.0;
+    return x;
+  }
+  [[nodiscard]] static Eigen::VectorXd noise(int size, unsigned seed) {
+    const std::vector<double> numbers = random_point(static_cast<std::size_t>(size), seed);
+    return Eigen::Map<const Eigen::VectorXd>(numbers.data(), size);
+  }
+
+  /// Numbers for slots; zero where the slot has no bound, as multipliers and weights are.
+  [[nodiscard]] Eigen::VectorXd slot_noise(unsigned seed) const {
+    Eigen::VectorXd out = noise(problem_.layout().slots(), seed);
+    for (int i = 0; i < problem_.layout().slots(); ++i) {
+      if (problem_.lower()(i) == -kUnbounded && problem_.upper()(i) == kUnbounded) out(i) = 0.0;
+    }
+    return out;
+  }
+
+  PlanarModel model_ = shipped_model();
+  DecisionLayout layout_{model_.config.steps};
+  PlanarTask task_ = task(model_, GetParam().first, GetParam().second);
+  ChainProblem problem_{model_, task_, layout_};
+  ChainTerms terms_{layout_.steps()};
+  NonlinearProgram program_ = program_of(model_, task_, layout_);
+  RowPlaces places_{problem_};
+};
+
+}  // namespace hopscotch::planner::testing_support
