@@ -9,7 +9,7 @@ CMAKE_ARGS ?=
 PREFIX ?= /usr/local
 
 PROGRAM := build/release/hopscotch
-BENCHES := planner mpc perception estimator sim tick
+BENCHES := planner mpc perception estimator sim tick wire
 FUZZERS := $(basename $(notdir $(wildcard tests/fuzz/*_fuzz.cpp)))
 FUZZ_SECONDS ?= 60
 

@@ -39,4 +39,7 @@ struct BenchSetup {
 /// Simulation of a jump from standing to rest, on true terrain and with the camera.
 [[nodiscard]] nlohmann::ordered_json bench_sim(const BenchSetup& setup);
 
+/// Encoding and decoding of ten joints, CPU time of each out of batches of a hundred.
+[[nodiscard]] nlohmann::ordered_json bench_wire();
+
 }  // namespace hopscotch::apps

@@ -44,6 +44,7 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
   if (options.what == "planner") return bench_planner(setup);
   if (options.what == "mpc") return bench_mpc(setup, options.qps);
   if (options.what == "perception") return bench_perception(setup);
+  if (options.what == "wire") return bench_wire();
   if (options.what == "estimator") return bench_estimator(setup, options.jumps);
   if (options.what == "tick") return bench_tick(setup);
   return bench_sim(setup);
@@ -69,9 +70,10 @@ void add_bench_command(CLI::App& app, Action& action) {
       app.add_subcommand("bench", "The figures that the README quotes, measured here");
   command->footer("Example: hopscotch bench planner --json");
   const auto options = std::make_shared<BenchOptions>();  // shared with the action below
-  command->add_option("WHAT", options->what, "planner, mpc, perception, estimator, sim or tick")
+  command
+      ->add_option("WHAT", options->what, "planner, mpc, perception, estimator, sim, tick or wire")
       ->required()
-      ->check(CLI::IsMember({"planner", "mpc", "perception", "estimator", "sim", "tick"}));
+      ->check(CLI::IsMember({"planner", "mpc", "perception", "estimator", "sim", "tick", "wire"}));
   command->add_option("--qps", options->qps, "mpc: a file of recorded QPs");
   command->add_option("--jumps", options->jumps, "estimator: so many jumps")
       ->check(CLI::Range(1, 100000))

@@ -1,12 +1,10 @@
 #include <linux/can.h>
-#include <net/if.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -18,6 +16,8 @@
 #include <vector>
 
 #include "apps/commands.hpp"
+#include "apps/doctor_can.hpp"
+#include "apps/finding.hpp"
 #include "apps/installation.hpp"
 #include "apps/program_config.hpp"
 #include "core/config_reader.hpp"
@@ -30,15 +30,6 @@ namespace hopscotch::apps {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// One thing that this machine can or cannot do.
-struct Finding {
-  std::string name;
-  bool ok = false;
-  std::string found = "";
-  std::string fix = "";  ///< Command or action; empty when all is well.
-  std::string needed_for = "";
-};
 
 Finding check_configuration() {
   Finding finding{.name = "configuration", .needed_for = "everything"};
@@ -118,37 +109,26 @@ Finding check_memory_lock() {
           .needed_for = "the robot"};
 }
 
-/// Interfaces of the link type that Linux gives to CAN.
-std::vector<std::string> can_interfaces() {
-  constexpr int kArphrdCan = 280;
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator("/sys/class/net", error)) {
-    std::ifstream type(entry.path() / "type");
-    int number = 0;
-    if (type >> number && number == kArphrdCan) names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
+Finding check_can_kernel() {
+  const int socket_fd = socket(AF_CAN, SOCK_RAW, CAN_RAW);
+  if (socket_fd >= 0) close(socket_fd);
+  const bool ok = socket_fd >= 0;
+  return {.name = "SocketCAN",
+          .ok = ok,
+          .found = ok ? "in the kernel" : "the kernel has no CAN",
+          .fix = ok ? "" : "modprobe can_raw, or boot a kernel that has it",
+          .needed_for = "the robot"};
 }
 
-Finding check_can() {
-  Finding finding{.name = "SocketCAN", .needed_for = "the robot"};
-  const int socket_fd = socket(AF_CAN, SOCK_RAW, CAN_RAW);
-  if (socket_fd < 0) {
-    finding.found = "the kernel has no CAN";
-    finding.fix = "modprobe can can_raw, or boot a kernel that has them";
-    return finding;
-  }
-  close(socket_fd);
-  const std::vector<std::string> names = can_interfaces();
-  finding.ok = !names.empty();
-  for (const std::string& name : names) finding.found += (finding.found.empty() ? "" : " ") + name;
-  if (names.empty()) {
-    finding.found = "no CAN interface";
-    finding.fix = "plug in the adapter; ip link set can0 up type can bitrate 1000000";
-  }
-  return finding;
+Finding check_real_time_kernel() {
+  std::ifstream file("/sys/kernel/realtime");
+  int flag = 0;
+  const bool ok = file >> flag && flag == 1;
+  return {.name = "real-time kernel",
+          .ok = ok,
+          .found = ok ? "PREEMPT_RT" : "not PREEMPT_RT",
+          .fix = ok ? "" : "apt-get install linux-image-rt-amd64 and boot it",
+          .needed_for = "the robot's deadlines under load"};
 }
 
 Finding check_multicast() {
@@ -170,8 +150,13 @@ Finding check_multicast() {
 }
 
 std::vector<Finding> examine() {
-  return {check_configuration(), check_rendering(),   check_ffmpeg(), check_display(),
-          check_real_time(),     check_memory_lock(), check_can(),    check_multicast()};
+  std::vector<Finding> findings{check_configuration(), check_rendering(), check_ffmpeg(),
+                                check_display(),       check_real_time(), check_real_time_kernel(),
+                                check_memory_lock(),   check_can_kernel()};
+  const std::vector<Finding> buses = check_can(config_directory() / "robot_bus.yaml");
+  findings.insert(findings.end(), buses.begin(), buses.end());
+  findings.push_back(check_multicast());
+  return findings;
 }
 
 void print_people(const std::vector<Finding>& findings) {

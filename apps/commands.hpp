@@ -22,6 +22,8 @@ void add_plan_command(CLI::App& app, Action& action);
 void add_target_command(CLI::App& app, Action& action);
 void add_command_command(CLI::App& app, Action& action);
 void add_report_command(CLI::App& app, Action& action);
+void add_robot_command(CLI::App& app, Action& action);
+void add_motors_command(CLI::App& app, Action& action);
 void add_doctor_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);
 

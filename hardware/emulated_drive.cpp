@@ -90,7 +90,7 @@ void EmulatedDrive::watch(core::Stamp now) {
 }
 
 double EmulatedDrive::torque(const ShaftState& shaft, core::Stamp now) {
-  if (defects_.silent) return 0.0;
+  if (defects_.silent) in_motor_mode_ = false;
   watch(now);
   if (!in_motor_mode_) return 0.0;
   const ShaftState seen = measured(shaft);

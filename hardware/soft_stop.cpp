@@ -11,6 +11,7 @@ SoftStopConfig SoftStopConfig::load(const core::ConfigReader& section) {
   config.damping = section.number("damping_Nms_per_rad", Range::positive());
   config.still_speed = section.number("still_speed_radps", Range::positive());
   config.still_time = section.number("still_time_s", Range::not_negative());
+  config.damping_time_max = section.number("damping_time_max_s", Range::above(0.0, 60.0));
   config.landing_kp = section.number("landing_kp_Nm_per_rad", Range::positive());
   config.landing_kd = section.number("landing_kd_Nms_per_rad", Range::positive());
   config.contact_torque = section.number("contact_torque_Nm", Range::positive());
@@ -30,7 +31,7 @@ void SoftStop::begin_in_flight(core::Stamp now, const core::JointVector& posture
 void SoftStop::begin_on_ground(core::Stamp now) noexcept {
   if (stage_ != Stage::not_started) return;
   stage_ = Stage::damping;
-  begun_ = now;
+  damped_ = now;
   moving_ = now;
 }
 
@@ -45,13 +46,15 @@ void SoftStop::advance(core::Stamp now, const core::SensorReadings& readings) no
     const bool met = loaded_ >= kSure && now.since(begun_) > kSettle;
     if (!met && now.since(begun_) < config_.flight_time_max) return;
     stage_ = Stage::damping;
+    damped_ = now;
     moving_ = now;
   }
   if (stage_ == Stage::damping) {
     const bool still =
         readings.dq.allFinite() && readings.dq.cwiseAbs().maxCoeff() < config_.still_speed;
     if (!still) moving_ = now;
-    if (now.since(moving_) >= config_.still_time && still) stage_ = Stage::limp;
+    const bool at_rest = still && now.since(moving_) >= config_.still_time;
+    if (at_rest || now.since(damped_) >= config_.damping_time_max) stage_ = Stage::limp;
   }
 }
 

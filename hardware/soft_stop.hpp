@@ -11,13 +11,14 @@ namespace hopscotch::hardware {
 
 /// How the robot comes to rest when its controller is no longer to be trusted; section `soft_stop`.
 struct SoftStopConfig {
-  double damping = 0.0;          ///< kd of all joints [N·m·s/rad].
-  double still_speed = 0.0;      ///< All joints slower than this: drives off [rad/s].
-  double still_time = 0.0;       ///< For so long [s].
-  double landing_kp = 0.0;       ///< Of the landing posture in the air [N·m/rad].
-  double landing_kd = 0.0;       ///< [N·m·s/rad]
-  double contact_torque = 0.0;   ///< A knee that bears more than this has met the ground [N·m].
-  double flight_time_max = 0.0;  ///< No fall takes longer [s].
+  double damping = 0.0;           ///< kd of all joints [N·m·s/rad].
+  double still_speed = 0.0;       ///< All joints slower than this: drives off [rad/s].
+  double still_time = 0.0;        ///< For so long [s].
+  double damping_time_max = 0.0;  ///< Then the drives go off, still or not [s].
+  double landing_kp = 0.0;        ///< Of the landing posture in the air [N·m/rad].
+  double landing_kd = 0.0;        ///< [N·m·s/rad]
+  double contact_torque = 0.0;    ///< A knee that bears more than this has met the ground [N·m].
+  double flight_time_max = 0.0;   ///< No fall takes longer [s].
 
   static SoftStopConfig load(const core::ConfigReader& section);
 };
@@ -50,6 +51,7 @@ class SoftStop {
   SoftStopConfig config_;
   Stage stage_ = Stage::not_started;
   core::Stamp begun_;
+  core::Stamp damped_;  // since
   core::Stamp moving_;
   int loaded_ = 0;  // readings in a row with a loaded knee
   core::JointVector posture_ = core::JointVector::Zero();

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+
+#include "core/config_reader.hpp"
+#include "core/time.hpp"
+
+namespace hopscotch::apps {
+
+/// How one thread is scheduled.
+struct ThreadSetup {
+  int priority = 0;  ///< Of SCHED_FIFO, 1 to 99; 0: ordinary.
+  int cpu = -1;      ///< The only one it runs on; -1: any.
+
+  static ThreadSetup load(const core::ConfigReader& section);
+};
+
+/// Section `threads` of the bus file.
+struct ThreadsConfig {
+  ThreadSetup control;
+  ThreadSetup mpc;
+  ThreadSetup planner;
+
+  static ThreadsConfig load(const core::ConfigReader& section);
+};
+
+/// Gives the calling thread its priority and CPU. @return What this machine refuses, with the fix;
+/// empty when all is well.
+[[nodiscard]] std::string schedule_this_thread(const ThreadSetup& setup);
+
+/// Keeps all memory of the process in place, now and later. @return as above.
+[[nodiscard]] std::string lock_memory();
+
+/// Touches the stack of the calling thread once, so that no page of it is missing later.
+void touch_stack();
+
+/// The moments k * period from the start on, by the monotonic clock.
+class PeriodicWake {
+ public:
+  explicit PeriodicWake(double period);
+
+  /// Sleeps until the next moment that has not passed yet. @return Now. One that has passed is not
+  /// made up for: a burst of late exchanges would be worse than a missing one.
+  core::Stamp wait() noexcept;
+
+ private:
+  std::int64_t period_;  // [ns]
+  std::int64_t next_;    // [ns]
+};
+
+}  // namespace hopscotch::apps

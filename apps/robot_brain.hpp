@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+
+#include "apps/pipeline.hpp"
+#include "apps/robot_config.hpp"
+#include "apps/robot_session.hpp"
+
+namespace hopscotch::apps {
+
+/// The whole pipeline for the robot's session, in lock-step with its exchanges, on a floor that the
+/// operator vouches for as level.
+class RobotBrain {
+ public:
+  explicit RobotBrain(const RobotConfig& config);
+
+  /// Refers to this object.
+  [[nodiscard]] SessionBrain session_brain();
+
+  /// The pipeline has begun; the robot stands and is held until the operator lets it jump.
+  [[nodiscard]] bool ticked() const { return ticked_; }
+  /// @pre ticked()
+  void apply(const core::OperatorCommand& command);
+  [[nodiscard]] const Pipeline& pipeline() const { return pipeline_; }
+  /// Landed so far.
+  [[nodiscard]] int jumps() const { return jumps_; }
+
+ private:
+  /// Sees nothing: no depth camera is connected.
+  class NoCamera final : public core::DepthSource {
+   public:
+    std::optional<core::DepthFrame> poll(core::Stamp) override { return std::nullopt; }
+  };
+
+  core::JointCommand tick(const core::SensorReadings& readings);
+  void hold();
+
+  NoCamera camera_;
+  Pipeline pipeline_;
+  bool ticked_ = false;
+  core::RobotPhase phase_ = core::RobotPhase::stand;
+  int jumps_ = 0;
+  int jumps_per_command_;
+  int jumps_left_ = 0;
+};
+
+/// The posture that a stop in flight lands with: that of standing [rad].
+/// @throws core::ConfigError if the robot cannot stand as configured.
+[[nodiscard]] core::JointVector landing_posture(const RobotConfig& config);
+
+}  // namespace hopscotch::apps

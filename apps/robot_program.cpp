@@ -1,0 +1,290 @@
+#include "apps/robot_program.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <stdexcept>
+
+#include "hardware/range_check.hpp"
+#include "msgs/channels.hpp"
+
+namespace hopscotch::apps {
+
+using core::ModeRequest;
+using core::Reason;
+
+namespace {
+
+constexpr double kPatience = 20.0;  // for `motors` in lock-step to be there [s]
+
+std::vector<hardware::CanBus> open_buses(const hardware::BusTopology& topology) {
+  std::vector<hardware::CanBus> buses;
+  for (std::size_t i = 0; i < topology.buses.size(); ++i) {
+    const hardware::BusSetup& setup = topology.buses[i];
+    hardware::CanBusOptions options{.interface_name = setup.interface_name,
+                                    .identifiers = {},
+                                    .flexible_data_rate = setup.data_bit_rate > 0.0};
+    for (const hardware::DriveMount& drive : topology.drives) {
+      if (drive.bus != i) continue;
+      options.identifiers.push_back(drive.reply_id);
+      options.identifiers.push_back(drive.id);  // to be confirmed, and to notice a second host
+    }
+    buses.emplace_back(options);
+  }
+  return buses;
+}
+
+}  // namespace
+
+Heartbeat::Heartbeat(LiveRun& live)
+    : thread_([this, &live](const std::stop_token& stop) {
+        constexpr auto kPeriod = std::chrono::milliseconds(200);
+        while (!stop.stop_requested()) {
+          std::this_thread::sleep_for(kPeriod);
+          const std::lock_guard lock(mutex_);
+          if (last_) live.publish(*last_);
+        }
+      }) {}
+
+void Heartbeat::remember(const msgs::Event& event) {
+  const std::lock_guard lock(mutex_);
+  last_ = event;
+}
+
+template <typename Value>
+void RobotProgram::publish(const Value& value) {
+  live_.publish(events_.make(now_, value));
+}
+
+RobotProgram::RobotProgram(const RobotConfig& config, Wire wire)
+    : config_(config),
+      wire_(wire),
+      buses_(open_buses(config.topology)),
+      imu_(config.imu),
+      plant_(config.plant, config.topology, config.robot, make_ports()),
+      session_(config, plant_, landing_posture(config)),
+      run_id_(wall_clock_us()),
+      gate_(run_id_, run_id_),
+      live_(live_url(), box_),
+      events_(run_id_) {}
+
+hardware::PlantPorts RobotProgram::make_ports() {
+  hardware::PlantPorts ports;
+  for (hardware::CanBus& bus : buses_) ports.buses.push_back(bus.port());
+  ports.imu = [this] { return imu_.poll(); };
+  ports.wait = [this] {
+    const std::optional<core::Stamp> now = step_ ? step_->grant() : wake_->wait();
+    world_gone_ = !now;
+    if (now) now_ = *now;
+    return now_;
+  };
+  return ports;
+}
+
+bool RobotProgram::ranges_agree() {
+  const hardware::RangeCheckResult check = hardware::check_ranges(config_.topology, make_ports());
+  std::printf("robot: ranges of %d drives read back and right, %d drives cannot tell theirs\n",
+              check.read, check.cannot_tell);
+  if (check.problem.empty()) return true;
+  std::fprintf(stderr, "robot: refused: %s\n", check.problem.c_str());
+  return false;
+}
+
+/// In lock-step with the emulated drives, or by the clock with the rights that this takes.
+void RobotProgram::start_time() {
+  if (config_.pacing.mode == Pacing::Mode::lockstep) {
+    step_.emplace(config_.pacing.socket, kPatience);
+    return;
+  }
+  if (wire_ == Wire::drive) {
+    // Planning takes a hundred periods: in one loop with the drives they would go limp meanwhile.
+    throw std::runtime_error(
+        "pacing.mode real_time: this version drives the robot in lock-step with emulated drives "
+        "only; --dry-run reads a real robot's joints");
+  }
+  for (const std::string& refused :
+       {lock_memory(), schedule_this_thread(config_.threads.control)}) {
+    if (!refused.empty()) std::fprintf(stderr, "robot: warning: %s\n", refused.c_str());
+  }
+  touch_stack();
+  wake_.emplace(1.0 / config_.topology.rate);
+}
+
+ExitStatus RobotProgram::run(const std::atomic<bool>& interrupted) {
+  start_time();
+  std::printf("robot: run %s, %zu buses at %.0f Hz, time %s%s\n", run_id_text(run_id_).c_str(),
+              buses_.size(), config_.topology.rate,
+              step_ ? "in lock-step with the emulated drives" : "by the clock",
+              wire_ == Wire::listen ? ", drives stay off" : "");
+  std::fflush(stdout);
+  if (!ranges_agree()) return ExitStatus::answer_is_no;
+  while (!world_gone_) {
+    if (interrupted && !finishing_) {
+      finishing_ = true;
+      session_.stop_now();
+    }
+    if (finishing_ && session_.stage() == SessionStage::off) break;
+    session_.tick();
+    attend();
+  }
+  if (world_gone_) {
+    std::fprintf(stderr, "robot: the emulated drives have gone\n");
+    return ExitStatus::answer_is_no;
+  }
+  // Once more with the drives off, so that they hear it.
+  session_.tick();
+  session_.tick();
+  std::printf("robot: stopped, drives off, after %.3f s\n", now_.seconds());
+  return ExitStatus::ok;
+}
+
+void RobotProgram::attend() {
+  for (const core::OperatorCommand& command : box_.take_all()) {
+    const core::Refusal refusal = gate_.check(command, wall_clock_us());
+    if (refusal.reason == Reason::wrong_run) continue;  // somebody else's
+    if (refusal.reason != Reason::none) {
+      answer(command, refusal, "");
+    } else {
+      obey(command);
+    }
+  }
+  if (brain_ && session_.stage() == SessionStage::active) {
+    for (const core::OperatorAnswer& said : brain_->pipeline().events().answers) {
+      if (said.command.sequence != 0) send(said);
+    }
+    // The mission's end by the operator's stop: the robot stands, its drives go off.
+    if (brain_->pipeline().end() == MissionEnd::stopped && !finishing_) {
+      finishing_ = true;
+      session_.stop_now();
+    }
+  }
+  tell_progress();
+  constexpr double kStatusEvery = 0.05;  // [s]
+  if (now_.since(told_) >= kStatusEvery) {
+    told_ = now_;
+    tell_status();
+  }
+}
+
+void RobotProgram::obey(const core::OperatorCommand& command) {
+  const SessionStage stage = session_.stage();
+  switch (command.mode) {
+    case ModeRequest::enable: return enable(command);
+    case ModeRequest::damp:
+      if (stage == SessionStage::off) {
+        return answer(command, {Reason::not_now, "the drives are off"}, "");
+      }
+      session_.stop_now();
+      return answer(command, {}, "the robot is brought to rest and its drives go off");
+    case ModeRequest::clear_fault:
+      if (!session_.clear_fault()) {
+        return answer(command, {Reason::not_now, "the drives are not off yet"}, "");
+      }
+      return answer(command, {}, "cleared: `hopscotch command enable` when the robot is home");
+    case ModeRequest::stop:
+      if (stage == SessionStage::off) {
+        finishing_ = true;
+        return answer(command, {}, "the drives are off already; the program ends");
+      }
+      break;
+    case ModeRequest::jump:
+    case ModeRequest::hold:
+    case ModeRequest::none: break;
+  }
+  if (stage != SessionStage::active || !brain_->ticked()) {
+    return answer(command,
+                  {Reason::not_now, "the robot is " + std::string(session_stage_name(stage)) +
+                                        ": it does not stand yet"},
+                  "");
+  }
+  brain_->apply(command);
+}
+
+void RobotProgram::enable(const core::OperatorCommand& command) {
+  if (wire_ == Wire::listen) {
+    return answer(command, {Reason::not_now, "--dry-run: the drives stay off"}, "");
+  }
+  const std::string obstacle = session_.obstacle();
+  if (!obstacle.empty()) return answer(command, {Reason::not_homed, obstacle}, "");
+  brain_ = std::make_unique<RobotBrain>(config_);
+  session_.enable(brain_->session_brain());
+  answer(command, {}, "the drives turn on and the robot stands up, then waits for `command jump`");
+}
+
+void RobotProgram::answer(const core::OperatorCommand& command, const core::Refusal& refusal,
+                          const std::string& remark) {
+  core::OperatorAnswer said;
+  said.command = command;
+  said.refusal = refusal;
+  said.remark = remark;
+  send(said);
+}
+
+void RobotProgram::send(const core::OperatorAnswer& said) {
+  std::printf("robot: %.3f s: operator's %s: %s\n", now_.seconds(),
+              said.command.mode == ModeRequest::none
+                  ? "target"
+                  : std::string(core::mode_request_name(said.command.mode)).c_str(),
+              said.accepted() ? "accepted" : said.refusal.text().c_str());
+  std::fflush(stdout);
+  publish(ack_of(now_, said));
+}
+
+void RobotProgram::tell_status() {
+  msgs::Status status;
+  if (brain_ && brain_->ticked()) status.control = brain_->pipeline().status();
+  status.control.stamp = now_;
+  if (session_.stage() != SessionStage::active) {
+    status.control.phase =
+        session_.fault().reason == Reason::none ? core::RobotPhase::damp : core::RobotPhase::fault;
+  }
+  status.control.fault = session_.fault().reason;
+  status.jump = told_jumps_;
+  status.deadline_misses = static_cast<int>(session_.deadlines().late);
+  const msgs::Event event = events_.make(now_, status);
+  live_.publish(event);
+  heartbeat_.remember(event);
+}
+
+std::string RobotProgram::fault_text() const {
+  const SessionFault& fault = session_.fault();
+  const std::string where = hardware::describe(fault.plant, config_.topology);
+  return std::string(core::reason_code(fault.reason)) + (where.empty() ? "" : ": " + where) +
+         ", in " + std::string(core::robot_phase_name(fault.phase));
+}
+
+void RobotProgram::tell_progress() {
+  const SessionStage stage = session_.stage();
+  if (stage != told_stage_) {
+    const bool fault =
+        stage == SessionStage::stopping && session_.fault().reason != Reason::stopped_by_user;
+    std::printf("robot: %.3f s: %s%s\n", now_.seconds(),
+                std::string(session_stage_name(stage)).c_str(),
+                fault ? (", fault " + fault_text()).c_str() : "");
+    std::fflush(stdout);
+    told_stage_ = stage;
+  }
+  if (brain_ && brain_->jumps() != told_jumps_) {
+    told_jumps_ = brain_->jumps();
+    std::printf("robot: %.3f s: jump %d has landed\n", now_.seconds(), told_jumps_);
+    std::fflush(stdout);
+  }
+  constexpr double kEvery = 1.0;  // [s]
+  if (wire_ == Wire::listen && now_.since(printed_) >= kEvery) {
+    printed_ = now_;
+    print_joints();
+  }
+}
+
+void RobotProgram::print_joints() const {
+  for (int joint = 0; joint < core::kJoints; ++joint) {
+    const hardware::DriveReport& drive = plant_.drives()[static_cast<std::size_t>(joint)];
+    std::printf("  %-16s %+8.4f rad  %5.1f degC  %s\n", hardware::joint_name(joint).c_str(),
+                session_.readings().q[joint], drive.temperature_degC,
+                drive.heard ? "answers" : "does not answer");
+  }
+  const std::string obstacle = session_.obstacle();
+  std::printf("  %s\n", obstacle.empty() ? "home: could be enabled" : obstacle.c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace hopscotch::apps

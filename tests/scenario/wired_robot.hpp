@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "apps/emulated_robot.hpp"
+#include "apps/fault_script.hpp"
+#include "apps/robot_brain.hpp"
+#include "apps/robot_config.hpp"
+#include "apps/robot_session.hpp"
+#include "sim/judge.hpp"
+
+namespace hopscotch::apps::testing {
+
+/// Robot and emulated drives in one process: the code that runs on the robot, on the emulated
+/// buses.
+class WiredRobot {
+ public:
+  explicit WiredRobot(const RobotConfig& config)
+      : world(emulated_robot_options(config)),
+        script(config.emulation.faults),
+        plant(config.plant, config.topology, config.robot, ports(config)),
+        session(config, plant, landing_posture(config)),
+        brain(config) {}
+
+  void run(double seconds) {
+    const core::Stamp end = world.now().after(seconds);
+    while (world.now() < end) tick();
+  }
+  /// False when it does not come true in time.
+  bool run_until(const std::function<bool()>& done, double seconds) {
+    const core::Stamp end = world.now().after(seconds);
+    while (world.now() < end && !done()) tick();
+    return done();
+  }
+  void tick() {
+    session.tick();
+    if (!world.in_harness()) fallen = fallen || sim::fall_of(world.truth()).has_value();
+  }
+  /// Two exchanges to hear all drives, then the operator's word.
+  void enable() {
+    session.tick();
+    session.tick();
+    session.enable(brain.session_brain());
+  }
+
+  void ask(core::ModeRequest mode) {
+    core::OperatorCommand command;
+    command.sequence = ++asked_;
+    command.mode = mode;
+    brain.apply(command);
+  }
+  /// Enables, stands up and waits until the robot would jump.
+  bool stand() {
+    enable();
+    return run_until([&] { return brain.ticked() && world.now().seconds() > 3.0; }, 5.0);
+  }
+
+  EmulatedRobot world;
+  FaultScript script;
+  hardware::RobotPlant plant;
+  RobotSession session;
+  RobotBrain brain;
+  bool fallen = false;
+  int stall_ticks = 0;  ///< The host oversleeps its next exchange by so much.
+
+ private:
+  std::uint64_t asked_ = 0;
+  hardware::PlantPorts ports(const RobotConfig& config) {
+    hardware::PlantPorts ports;
+    for (std::size_t i = 0; i < config.topology.buses.size(); ++i) {
+      ports.buses.push_back(world.bus(i).host_port());
+    }
+    ports.imu = [this] { return world.imu(); };
+    const int period = static_cast<int>(std::lround(1000.0 / config.topology.rate));
+    ports.wait = [this, period] {
+      for (int i = 0; i < period + stall_ticks; ++i) {
+        script.play(world);
+        world.advance();
+      }
+      stall_ticks = 0;
+      return world.now();
+    };
+    return ports;
+  }
+};
+
+inline RobotConfig wired_config() {
+  return RobotConfig::load(std::string(HOPSCOTCH_SOURCE_DIR) + "/config/robot_bus.yaml");
+}
+
+}  // namespace hopscotch::apps::testing

@@ -1,0 +1,263 @@
+// The robot's own program on emulated CAN buses and drives, with MuJoCo behind them. Every fault
+// has its end state: who is limp, who stands, and how far the trunk came down.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/scenario/wired_robot.hpp"
+
+namespace hopscotch::apps {
+namespace {
+
+using core::Reason;
+using core::RobotPhase;
+using testing::WiredRobot;
+
+bool any_drive_on(WiredRobot& robot) {
+  for (int joint = 0; joint < core::kJoints; ++joint) {
+    if (robot.world.drive(joint).in_motor_mode()) return true;
+  }
+  return false;
+}
+
+TEST(WiredRobot, StandsUpLeapsThreeTimesAndStopsOnCommand) {
+  RobotConfig config = testing::wired_config();
+  config.session.jumps_per_command = 3;
+  WiredRobot robot(config);
+  ASSERT_TRUE(robot.stand());
+  const double standing = robot.world.truth().state.p_WB.z();
+  EXPECT_EQ(robot.session.stage(), SessionStage::active);
+  robot.run(1.0);
+  EXPECT_EQ(robot.brain.jumps(), 0);  // nothing jumps before it is told to
+  robot.ask(core::ModeRequest::jump);
+  ASSERT_TRUE(robot.run_until([&] { return robot.brain.jumps() == 3; }, 20.0))
+      << core::reason_code(robot.session.fault().reason) << " "
+      << hardware::describe(robot.session.fault().plant, robot.world.topology());
+  robot.run(4.0);
+  EXPECT_EQ(robot.brain.jumps(), 3);  // as many as configured, then it holds
+  robot.ask(core::ModeRequest::stop);
+  ASSERT_TRUE(robot.run_until([&] { return robot.brain.pipeline().end().has_value(); }, 5.0));
+  EXPECT_EQ(*robot.brain.pipeline().end(), MissionEnd::stopped);
+  EXPECT_FALSE(robot.fallen);
+  EXPECT_NEAR(robot.world.truth().state.p_WB.x(), 0.75, 0.12);  // three times 25 cm
+  EXPECT_NEAR(robot.world.truth().state.p_WB.z(), standing, 0.02);
+  EXPECT_EQ(robot.plant.counters().lost_replies, 0U);
+  robot.session.stop_now();
+  EXPECT_TRUE(robot.run_until([&] { return robot.session.stage() == SessionStage::off; }, 5.0));
+  robot.run(0.01);
+  EXPECT_FALSE(any_drive_on(robot));
+}
+
+constexpr int kLeftKnee = 3;
+constexpr std::size_t kKneeBus = 1;
+
+class WiredFault : public ::testing::Test {
+ protected:
+  void stand() {
+    robot_ = std::make_unique<WiredRobot>(config_);
+    ASSERT_TRUE(robot_->stand());
+    ASSERT_EQ(robot_->session.fault().reason, Reason::none);
+    highest_ = robot_->world.truth().state.p_WB.z();
+  }
+  void fly() {
+    stand();
+    robot_->ask(core::ModeRequest::jump);
+    ASSERT_TRUE(robot_->run_until([&] { return phase() == RobotPhase::flight; }, 6.0));
+    robot_->run(0.05);
+    ASSERT_EQ(phase(), RobotPhase::flight);
+  }
+  [[nodiscard]] RobotPhase phase() const { return robot_->brain.pipeline().status().phase; }
+
+  /// The robot notices, comes to rest and lets go: the end of every fault.
+  void expect_soft_stop(Reason reason) {
+    EXPECT_TRUE(
+        robot_->run_until([&] { return robot_->session.stage() == SessionStage::stopping; }, 1.0))
+        << "never noticed";
+    EXPECT_EQ(robot_->session.fault().reason, reason)
+        << hardware::describe(robot_->session.fault().plant, robot_->world.topology());
+    EXPECT_TRUE(
+        robot_->run_until([&] { return robot_->session.stage() == SessionStage::off; }, 8.0))
+        << "never still";
+    robot_->run(0.05);
+    EXPECT_FALSE(any_drive_on(*robot_));
+    EXPECT_FALSE(robot_->session.obstacle().empty());  // latched until the operator clears it
+  }
+  void expect_standing() {
+    EXPECT_EQ(robot_->session.stage(), SessionStage::active);
+    EXPECT_EQ(robot_->session.fault().reason, Reason::none);
+    EXPECT_FALSE(robot_->fallen);
+    EXPECT_NEAR(robot_->world.truth().state.p_WB.z(), highest_, 0.03);
+  }
+
+  RobotConfig config_ = testing::wired_config();
+  std::unique_ptr<WiredRobot> robot_;
+  double highest_ = 0.0;  // of the trunk while standing [m]
+};
+
+TEST_F(WiredFault, OneLostReplyIsLivedWith) {
+  stand();
+  robot_->world.bus(kKneeBus).lose_answers(1);
+  robot_->run(0.5);
+  EXPECT_EQ(robot_->plant.counters().lost_replies, 1U);
+  expect_standing();
+}
+
+TEST_F(WiredFault, NoisyWiresLoseRepliesAndTheRobotLeapsAllTheSame) {
+  config_.emulation.bus_error_share = 0.002;
+  stand();
+  robot_->ask(core::ModeRequest::jump);
+  EXPECT_TRUE(robot_->run_until([&] { return robot_->brain.jumps() == 1; }, 6.0));
+  robot_->run(2.0);
+  EXPECT_GT(robot_->plant.counters().lost_replies, 20U);
+  expect_standing();
+}
+
+TEST_F(WiredFault, ManyLostRepliesEndInASoftStop) {
+  stand();
+  robot_->world.bus(kKneeBus).lose_answers(20);  // of two drives: ten exchanges
+  expect_soft_stop(Reason::drive_silent);
+}
+
+TEST_F(WiredFault, SilentDriveEndsInASoftStopOfAllOthers) {
+  stand();
+  robot_->world.drive(kLeftKnee).defects().silent = true;
+  expect_soft_stop(Reason::drive_silent);
+  EXPECT_EQ(robot_->session.fault().plant.joint, kLeftKnee);
+}
+
+TEST_F(WiredFault, OverTemperatureEndsInASoftStop) {
+  stand();
+  robot_->world.drive(kLeftKnee).defects().fault = hardware::DriveFault::over_temperature;
+  expect_soft_stop(Reason::drive_fault);
+  EXPECT_EQ(robot_->session.fault().plant.drive, hardware::DriveFault::over_temperature);
+}
+
+TEST_F(WiredFault, SwappedReplyIdentifiersAreFoundBeforeAnyTorque) {
+  config_.emulation.faults = {{.kind = ScriptedFault::Kind::swapped_replies, .joint = kLeftKnee}};
+  WiredRobot robot(config_);
+  robot.session.tick();
+  robot.session.tick();
+  EXPECT_NE(robot.session.obstacle().find("left_knee has not answered"), std::string::npos)
+      << robot.session.obstacle();
+  EXPECT_FALSE(any_drive_on(robot));
+  EXPECT_GT(robot.plant.counters().wrong_sender, 0U);
+}
+
+TEST_F(WiredFault, WrongHomePoseIsRefused) {
+  config_.homing.pose(3) = -1.2;  // the jig says otherwise
+  WiredRobot robot(testing::wired_config());
+  hardware::HomingConfig wrong = config_.homing;
+  robot.session.tick();
+  robot.session.tick();
+  EXPECT_NE(hardware::homing_problem(wrong, config_.robot, robot.session.readings().q), "");
+  EXPECT_EQ(robot.session.obstacle(), "");
+}
+
+TEST_F(WiredFault, BusOffOnOneBusEndsInASoftStopOnTheOthers) {
+  stand();
+  robot_->world.bus(kKneeBus).force_bus_off();
+  EXPECT_TRUE(
+      robot_->run_until([&] { return robot_->session.stage() == SessionStage::stopping; }, 0.01));
+  EXPECT_EQ(robot_->session.fault().reason, Reason::bus_fault);
+  EXPECT_EQ(robot_->session.fault().plant.bus, static_cast<int>(kKneeBus));
+  // What the bus does not reach goes limp by its watchdog; the rest brakes until it is still.
+  robot_->run(0.05);
+  EXPECT_FALSE(robot_->world.drive(kLeftKnee).in_motor_mode());
+  EXPECT_TRUE(robot_->world.drive(0).in_motor_mode());
+  robot_->run(5.0);
+  EXPECT_EQ(robot_->world.drive(0).setpoint().kp, 0.0);
+}
+
+TEST_F(WiredFault, CutBusIsNoticedWithinThreeExchanges) {
+  stand();
+  robot_->world.bus(kKneeBus).cut();
+  EXPECT_TRUE(
+      robot_->run_until([&] { return robot_->session.stage() == SessionStage::stopping; }, 0.003));
+  EXPECT_EQ(robot_->session.fault().reason, Reason::bus_fault);
+}
+
+TEST_F(WiredFault, StuckEncoderOfAMovingJointEndsInASoftStop) {
+  stand();
+  robot_->ask(core::ModeRequest::jump);
+  ASSERT_TRUE(robot_->run_until([&] { return core::is_pushing_off(phase()); }, 6.0));
+  robot_->run(0.1);
+  robot_->world.drive(kLeftKnee).defects().encoder_stuck = true;
+  expect_soft_stop(Reason::encoder_stuck);
+  EXPECT_EQ(robot_->session.fault().plant.joint, kLeftKnee);
+}
+
+TEST_F(WiredFault, ImuLossInStanceEndsInASoftStop) {
+  stand();
+  robot_->world.switch_imu_off();
+  expect_soft_stop(Reason::imu_lost);
+}
+
+TEST_F(WiredFault, ImuLossInFlightLandsOnItsFeetBeforeItLetsGo) {
+  fly();
+  robot_->world.switch_imu_off();
+  ASSERT_TRUE(
+      robot_->run_until([&] { return robot_->session.stage() == SessionStage::stopping; }, 0.02));
+  EXPECT_EQ(robot_->session.fault().phase, RobotPhase::flight);
+  EXPECT_EQ(robot_->session.stop_stage(), hardware::SoftStop::Stage::landing_posture);
+  ASSERT_TRUE(robot_->run_until(
+      [&] { return robot_->session.stop_stage() == hardware::SoftStop::Stage::damping; }, 0.9));
+  const auto contact = robot_->world.truth().state.contact;
+  EXPECT_TRUE(contact[0] || contact[1]);  // the ground, not the time, ended the flight
+  EXPECT_FALSE(robot_->fallen);           // nothing but the feet has touched it so far
+  EXPECT_TRUE(robot_->run_until([&] { return robot_->session.stage() == SessionStage::off; }, 8.0));
+}
+
+TEST_F(WiredFault, SilentDriveInFlightLandsOnItsFeetToo) {
+  fly();
+  robot_->world.drive(9).defects().silent = true;  // the right ankle
+  ASSERT_TRUE(
+      robot_->run_until([&] { return robot_->session.stage() == SessionStage::stopping; }, 0.02));
+  EXPECT_EQ(robot_->session.stop_stage(), hardware::SoftStop::Stage::landing_posture);
+}
+
+TEST_F(WiredFault, HostThatSleepsFiveMillisecondsEndsInASoftStop) {
+  stand();
+  robot_->stall_ticks = 5;
+  expect_soft_stop(Reason::deadline);
+  EXPECT_EQ(robot_->session.deadlines().late, 1U);
+  EXPECT_NEAR(robot_->session.deadlines().worst, 0.005, 1e-9);
+}
+
+TEST_F(WiredFault, OneLateExchangeIsCountedAndFourInATenthOfASecondAreTooMany) {
+  stand();
+  robot_->stall_ticks = 2;
+  robot_->run(0.2);
+  EXPECT_EQ(robot_->session.deadlines().late, 1U);
+  expect_standing();
+  for (int i = 0; i < 4; ++i) {
+    robot_->stall_ticks = 2;
+    robot_->run(0.01);
+  }
+  EXPECT_EQ(robot_->session.fault().reason, Reason::deadline);
+}
+
+TEST_F(WiredFault, DrivesOfAKilledProgramGoLimpByThemselves) {
+  stand();
+  for (int tick = 0; tick < 40; ++tick) robot_->world.advance();  // nobody sends anything
+  EXPECT_FALSE(any_drive_on(*robot_));
+}
+
+TEST_F(WiredFault, PlannerThatNeverAnswersLeavesTheRobotStanding) {
+  config_.tuning.runtime.planning_latency = 60.0;  // [s]
+  stand();
+  robot_->ask(core::ModeRequest::jump);
+  robot_->run(4.0);
+  EXPECT_EQ(robot_->brain.jumps(), 0);
+  expect_standing();
+}
+
+TEST_F(WiredFault, FaultIsClearedByTheOperatorAndTheRobotStandsUpAgain) {
+  stand();
+  robot_->session.stop_now();
+  EXPECT_TRUE(robot_->run_until([&] { return robot_->session.stage() == SessionStage::off; }, 8.0));
+  EXPECT_TRUE(robot_->session.clear_fault());
+  EXPECT_NE(robot_->session.obstacle(), "");  // it lies on the floor: not home
+}
+
+}  // namespace
+}  // namespace hopscotch::apps
