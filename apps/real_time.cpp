@@ -39,8 +39,6 @@ ThreadSetup ThreadSetup::load(const core::ConfigReader& section) {
 ThreadsConfig ThreadsConfig::load(const core::ConfigReader& section) {
   ThreadsConfig config;
   config.control = ThreadSetup::load(section.section("control"));
-  config.mpc = ThreadSetup::load(section.section("mpc"));
-  config.planner = ThreadSetup::load(section.section("planner"));
   section.finish();
   return config;
 }

@@ -17,9 +17,7 @@ struct ThreadSetup {
 
 /// Section `threads` of the bus file.
 struct ThreadsConfig {
-  ThreadSetup control;
-  ThreadSetup mpc;
-  ThreadSetup planner;
+  ThreadSetup control;  ///< Exchanges with the drives.
 
   static ThreadsConfig load(const core::ConfigReader& section);
 };
