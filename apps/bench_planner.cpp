@@ -1,11 +1,18 @@
+#include <algorithm>
+#include <fstream>
+#include <sstream>
 #include <vector>
 
 #include "apps/bench.hpp"
+#include "apps/installation.hpp"
 #include "apps/run_result.hpp"
 #include "apps/stopwatch.hpp"
 #include "core/config_reader.hpp"
+#include "planner/chain_solver.hpp"
 #include "planner/jump_planner.hpp"
+#include "planner/planar_task.hpp"
 #include "planner/step_target.hpp"
+#include "planner/warm_start.hpp"
 
 namespace hopscotch::apps {
 
@@ -17,70 +24,156 @@ nlohmann::ordered_json percentile_group(std::vector<double> samples, double scal
 
 namespace {
 
-/// Distances and heights inside of what `footstep.reach` lets the robot choose [m].
-std::vector<planner::StepRequest> reachable_grid() {
-  std::vector<planner::StepRequest> grid;
-  const auto add_row = [&grid](double height, double from, double to) {
-    for (double distance = from; distance <= to + 1e-9; distance += 0.03) {
-      grid.push_back({.distance = distance,
-                      .height = height,
-                      .edge = planner::default_edge(distance, height)});
+/// Ipopt takes twenty times as long: it solves every fifth target.
+constexpr std::size_t kIpoptEvery = 5;
+/// A warm start comes from the plan to the same place moved by so much [m].
+constexpr double kMoved = 0.02;
+
+struct BenchTarget {
+  double distance = 0.0;
+  double height = 0.0;
+  planner::StartKind start = planner::StartKind::stand;
+};
+
+/// The published grid; `planner_grid` made it.
+std::vector<BenchTarget> read_targets() {
+  const std::filesystem::path path = config_directory() / "bench" / "planner_targets.csv";
+  std::ifstream file(path);
+  if (!file) throw core::ConfigError(path.string() + ": cannot be read");
+  std::vector<BenchTarget> targets;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    if (number == 1) continue;  // names of the columns
+    std::istringstream fields(line);
+    BenchTarget target;
+    char comma = ' ';
+    std::string start;
+    fields >> target.distance >> comma >> target.height >> comma >> start;
+    const std::optional<planner::StartKind> kind = planner::start_kind_from(start);
+    if (!fields || !kind) {
+      throw core::ConfigError(path.string() + ":" + std::to_string(number) +
+                              ": must be distance,height,start");
     }
-  };
-  add_row(0.0, 0.20, 0.53);
-  add_row(0.05, 0.30, 0.48);
-  add_row(0.10, 0.30, 0.45);
-  add_row(0.15, 0.30, 0.42);
-  add_row(0.20, 0.30, 0.42);
-  add_row(-0.05, 0.30, 0.48);
-  add_row(-0.15, 0.33, 0.42);
-  add_row(-0.25, 0.36, 0.42);
-  return grid;
+    target.start = *kind;
+    targets.push_back(target);
+  }
+  return targets;
+}
+
+planner::PlanRequest request_for(const BenchSetup& setup, const BenchTarget& target) {
+  const model::StandPosture& posture = setup.config.stand_posture;
+  const std::optional<core::RobotState> start =
+      planner::start_state(target.start, setup.robot, posture);
+  if (!start) throw core::ConfigError("model.stand_posture cannot be taken");
+  const planner::StepRequest step{.distance = target.distance,
+                                  .height = target.height,
+                                  .edge = planner::default_edge(target.distance, target.height)};
+  return {
+      .start = *start, .target = planner::step_target(step, setup.robot), .final_posture = posture};
 }
 
 struct PlannerSamples {
-  std::vector<double> solve_ms;
-  std::vector<double> iteration_ms;
-  int solved = 0;
+  std::vector<double> plan_ms;
+  int planned = 0;
+
+  void plan(planner::JumpPlanner& planner, const planner::PlanRequest& request) {
+    const Stopwatch watch(TimeOf::thread);
+    const core::Result<core::JumpPlan> result = planner.plan(request);
+    plan_ms.push_back(watch.milliseconds());
+    if (result) ++planned;
+  }
 };
 
-void plan_once(planner::JumpPlanner& planner, const planner::PlanRequest& request,
-               PlannerSamples& samples) {
-  const Stopwatch watch(TimeOf::thread);
-  const core::Result<core::JumpPlan> plan = planner.plan(request);
-  const double elapsed_ms = watch.milliseconds();
-  samples.solve_ms.push_back(elapsed_ms);
-  if (!plan) return;
-  ++samples.solved;
-  if (plan->iterations > 0) samples.iteration_ms.push_back(elapsed_ms / plan->iterations);
-}
+/// What an iteration of the chain solver is made of, each piece timed alone at the solution.
+struct IterationSamples {
+  planner::PlanarModel model;
+  planner::DecisionLayout layout{model.config.steps};
+  planner::ChainSolver solver{layout};
+  planner::ChainTerms terms{layout.steps()};
+  std::vector<double> iteration_ms;
+  double total_ms = 0.0;
+  double derivatives_ms = 0.0;
+  double values_ms = 0.0;
+  int solved = 0;
+
+  explicit IterationSamples(const BenchSetup& setup) : model(setup.robot, setup.config.planner) {}
+
+  void solve(const planner::PlanRequest& request) {
+    const core::Result<planner::PlanarTask> task = planner::planar_task(model, request);
+    if (!task) return;
+    const planner::ChainProblem problem(model, *task, layout);
+    const Eigen::VectorXd guess = planner::kinematic_guess(model, *task, layout);
+    const Stopwatch watch(TimeOf::thread);
+    const planner::ChainOutcome outcome =
+        solver.solve(problem, guess, {model.config.iterations_max, model.config.tolerance});
+    const double elapsed_ms = watch.milliseconds();
+    if (outcome.status != planner::SolveStatus::solved) return;
+    ++solved;
+    iteration_ms.push_back(elapsed_ms / std::max(1, outcome.iterations));
+    total_ms += iteration_ms.back();
+    time_pieces(problem);
+  }
+
+  void time_pieces(const planner::ChainProblem& problem) {
+    const planner::ChainLayout& chain = problem.layout();
+    Eigen::VectorXd point = Eigen::VectorXd::Zero(chain.variables() + 1);
+    point.head(chain.variables()) = solver.x();
+    Eigen::VectorXd slots(chain.slots());
+    Eigen::VectorXd equalities(chain.equalities());
+    const Stopwatch watch(TimeOf::thread);
+    problem.expand(point, solver.slot_multipliers(), solver.equality_multipliers(), terms);
+    derivatives_ms += watch.milliseconds();
+    const Stopwatch second(TimeOf::thread);
+    (void)problem.values(point, slots, equalities);
+    values_ms += second.milliseconds();
+  }
+
+  [[nodiscard]] nlohmann::ordered_json shares() const {
+    const double derivatives = derivatives_ms / total_ms;
+    const double values = 2.0 * values_ms / total_ms;  // of the trial and of the accepted point
+    return {{"derivatives", derivatives},
+            {"values", values},
+            {"newton_step_and_rest", 1.0 - derivatives - values}};
+  }
+};
 
 }  // namespace
 
 nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
-  const model::StandPosture& posture = setup.config.stand_posture;
-  const std::optional<model::StandPose> pose = model::stand_pose(setup.robot, posture);
-  if (!pose) throw core::ConfigError("model.stand_posture cannot be taken");
   planner::JumpPlanner planner(setup.config.planner, setup.robot);
   PlannerSamples cold;
   PlannerSamples warm;
-  const std::vector<planner::StepRequest> grid = reachable_grid();
-  for (const planner::StepRequest& step : grid) {
-    planner::PlanRequest request{.start = planner::standing_state(*pose),
-                                 .target = planner::step_target(step, setup.robot),
-                                 .final_posture = posture};
-    plan_once(planner, request, cold);
-    request.guess = planner::StartGuess::previous;
-    plan_once(planner, request, warm);
+  PlannerSamples ipopt;
+  IterationSamples iterations(setup);
+  const std::vector<BenchTarget> targets = read_targets();
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const planner::PlanRequest request = request_for(setup, targets[i]);
+    cold.plan(planner, request);
+    iterations.solve(request);
+    BenchTarget neighbour = targets[i];
+    neighbour.distance += i % 2 == 0 ? kMoved : -kMoved;
+    if (planner.plan(request_for(setup, neighbour))) {
+      planner::PlanRequest again = request;
+      again.guess = planner::StartGuess::previous;
+      warm.plan(planner, again);
+    }
+    if (i % kIpoptEvery != 0) continue;
+    planner::PlanRequest reference = request;
+    reference.solver = planner::Solver::ipopt;
+    ipopt.plan(planner, reference);
   }
-  const double count = static_cast<double>(grid.size());
-  return {{"n", grid.size()},
-          {"solver", "ipopt"},
-          {"cold_ms", percentile_group(cold.solve_ms, 1.0)},
-          {"warm_ms", percentile_group(warm.solve_ms, 1.0)},
-          {"iteration_ms", percentile_group(cold.iteration_ms, 1.0)},
-          {"success", cold.solved / count},
-          {"targets", grid.size()}};
+  const double count = static_cast<double>(targets.size());
+  return {{"n", targets.size()},
+          {"solver", "chain"},
+          {"cold_ms", percentile_group(cold.plan_ms, 1.0)},
+          {"warm_ms", percentile_group(warm.plan_ms, 1.0)},
+          {"iteration_ms", percentile_group(iterations.iteration_ms, 1.0)},
+          {"ipopt_ms", percentile_group(ipopt.plan_ms, 1.0)},
+          {"success", iterations.solved / count},
+          {"certified", cold.planned / count},
+          {"warm_success", warm.planned / std::max(1.0, static_cast<double>(warm.plan_ms.size()))},
+          {"targets", targets.size()},
+          {"shares", iterations.shares()}};
 }
 
 }  // namespace hopscotch::apps

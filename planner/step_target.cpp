@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kEdgeAheadOfStart = 0.12;  // [m]
 constexpr double kEdgeBeforeTarget = 0.12;  // [m]
+constexpr double kLowered = 0.04;           // [m]
+constexpr double kSinkingRate = 0.2;  // of hip and ankle; the knee bends twice as fast [rad/s]
 
 }  // namespace
 
@@ -47,6 +49,39 @@ core::RobotState standing_state(const model::StandPose& pose) {
   state.q = pose.q;
   state.dq.setZero();
   state.contact.fill(true);
+  return state;
+}
+
+std::string_view start_kind_name(StartKind kind) {
+  switch (kind) {
+    case StartKind::stand: return "stand";
+    case StartKind::low: return "low";
+    case StartKind::moving: return "moving";
+  }
+  return "";
+}
+
+std::optional<StartKind> start_kind_from(std::string_view name) {
+  for (const StartKind kind : {StartKind::stand, StartKind::low, StartKind::moving}) {
+    if (name == start_kind_name(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
+std::optional<core::RobotState> start_state(StartKind kind, const model::RobotParameters& robot,
+                                            const model::StandPosture& posture) {
+  model::StandPosture from = posture;
+  if (kind != StartKind::stand) from.com_height -= kLowered;
+  const std::optional<model::StandPose> pose = model::stand_pose(robot, from);
+  if (!pose) return std::nullopt;
+  core::RobotState state = standing_state(*pose);
+  if (kind != StartKind::moving) return state;
+  // Feet stay flat and the trunk keeps its pitch: the rates of a leg add up to zero.
+  for (const core::Leg leg : core::kAllLegs) {
+    state.dq(core::joint_index(leg, core::Joint::hip_pitch)) = -kSinkingRate;
+    state.dq(core::joint_index(leg, core::Joint::knee)) = 2.0 * kSinkingRate;
+    state.dq(core::joint_index(leg, core::Joint::ankle)) = -kSinkingRate;
+  }
   return state;
 }
 

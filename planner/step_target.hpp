@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
 #include "core/landing_target.hpp"
 #include "core/robot_state.hpp"
 #include "model/robot_parameters.hpp"
@@ -26,5 +30,19 @@ struct StepRequest {
 
 /// The robot standing in `pose` with the mid-point of its soles at the origin of W, at rest.
 [[nodiscard]] core::RobotState standing_state(const model::StandPose& pose);
+
+/// From which state a benchmark jumps.
+enum class StartKind : std::uint8_t {
+  stand,   ///< The stand posture at rest.
+  low,     ///< CoM 4 cm lower.
+  moving,  ///< The same, still sinking as after a landing.
+};
+[[nodiscard]] std::string_view start_kind_name(StartKind kind);
+/// @return empty for any other text.
+[[nodiscard]] std::optional<StartKind> start_kind_from(std::string_view name);
+/// @return empty if the legs cannot take the posture.
+[[nodiscard]] std::optional<core::RobotState> start_state(StartKind kind,
+                                                          const model::RobotParameters& robot,
+                                                          const model::StandPosture& posture);
 
 }  // namespace hopscotch::planner
