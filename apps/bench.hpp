@@ -34,7 +34,7 @@ struct BenchSetup {
 /// The state estimator against the truth of simulated leaps on level ground.
 /// @param jumps How many; twenty make a run.
 [[nodiscard]] nlohmann::ordered_json bench_estimator(const BenchSetup& setup, int jumps);
-/// The control tick in a simulated run.
+/// Estimator and control tick in a simulated run, the MPC apart.
 [[nodiscard]] nlohmann::ordered_json bench_tick(const BenchSetup& setup);
 /// Simulation of a jump from standing to rest, on true terrain and with the camera.
 [[nodiscard]] nlohmann::ordered_json bench_sim(const BenchSetup& setup);

@@ -35,6 +35,7 @@ struct RunOptions {
   int jumps = 0;
   std::string perception = "camera";
   std::string state = "estimate";
+  std::string ablation = "none";
   double pace = 0.0;
   bool video = false;
   bool view = false;
@@ -64,6 +65,7 @@ Prepared prepare(const RunOptions& options) {
   request.seed = options.seed;
   request.jumps_max = options.jumps;
   request.state = options.state == "truth" ? StateSource::truth : StateSource::estimate;
+  request.ablation = core::ablation_from_name(options.ablation).value();  // checked by the parser
   request.eyes = options.perception == "truth" ? Eyes::truth : Eyes::camera;
   prepared.sources = {read_file(options.scenario), read_file(options.config),
                       read_file(robot_file(request.scenario.plant.robot))};
@@ -191,6 +193,10 @@ void add_run_command(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--state", options->state, "What the robot knows its state by")
       ->check(CLI::IsMember({"estimate", "truth"}))
+      ->capture_default_str();
+  command->add_option("--ablation", options->ablation, "Leave a part of the method out")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(core::kAblationNames.begin(), core::kAblationNames.end())))
       ->capture_default_str();
   command->add_option("--out", options->out, "Run folder [runs/<scenario>-<seed>]");
   command->add_option("--config", options->config, "Tuning")->capture_default_str();

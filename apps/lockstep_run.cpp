@@ -44,6 +44,12 @@ Mission mission_of(const RunRequest& request) {
   return mission;
 }
 
+ProgramConfig config_of(const RunRequest& request) {
+  ProgramConfig config = request.config;
+  config.control.ablation = request.ablation;
+  return config;
+}
+
 std::optional<core::JumpPhase> jump_phase(RobotPhase phase) {
   switch (phase) {
     case RobotPhase::crouch:
@@ -80,7 +86,7 @@ LockstepRun::LockstepRun(const RunRequest& request)
     : request_(request),
       plant_(plant_options(request)),
       camera_(request.scenario.camera, request.plant_robot, request.scenario.seen, request.seed),
-      pipeline_(request.config, request.robot, mission_of(request), oracle()),
+      pipeline_(config_of(request), request.robot, mission_of(request), oracle()),
       scorer_(request.plant_robot, request.scenario.true_terrain()) {
   result_.scenario = request.scenario.name;
   result_.seed = request.seed;
@@ -131,6 +137,7 @@ void LockstepRun::collect_times() {
   if (events.perception_ms) samples_.perception_ms.push_back(*events.perception_ms);
   if (events.estimator_ms) samples_.estimator_ms.push_back(*events.estimator_ms);
   samples_.tick_ms.push_back(events.tick_ms);
+  samples_.allocations += events.allocations;
 }
 
 /// The largest errors of the state that was used. A fall is no measure of an estimator.

@@ -10,6 +10,7 @@
 #include "apps/pipeline.hpp"
 #include "apps/program_config.hpp"
 #include "apps/run_result.hpp"
+#include "core/ablation.hpp"
 #include "core/sensor_readings.hpp"
 #include "sim/mujoco_plant.hpp"
 #include "sim/scenario.hpp"
@@ -30,6 +31,7 @@ struct RunRequest {
   int jumps_max = 0;  ///< Stop after so many; 0: no limit.
   Eyes eyes = Eyes::camera;
   StateSource state = StateSource::estimate;
+  core::Ablation ablation = core::Ablation::none;
 };
 
 /// Everything that happened in one tick, for logs and views.
@@ -68,6 +70,7 @@ class LockstepRun {
   /// Wall times of the stages so far [ms].
   struct StageSamples {
     std::vector<double> plan_ms, mpc_ms, perception_ms, estimator_ms, tick_ms;
+    std::size_t allocations = 0;  ///< In estimator and control tick.
   };
   [[nodiscard]] const Pipeline& pipeline() const { return pipeline_; }
   [[nodiscard]] const StageSamples& samples() const { return samples_; }

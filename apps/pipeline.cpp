@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/allocation_count.hpp"
 #include "apps/stopwatch.hpp"
 #include "core/check.hpp"
 #include "model/kinematics.hpp"
@@ -34,9 +35,12 @@ core::JointCommand Pipeline::tick(const core::SensorReadings& readings, core::De
   events_ = {};
   if (control_ && readings.stamp <= state_.stamp) return command_;
   const Stopwatch watch;
+  const std::size_t before = allocation_count();
   state_ = estimator_.update(
       readings, control_ ? control_->expected_contact() : control::ContactExpectation::support);
+  events_.allocations += allocation_count() - before;
   events_.estimator_ms = watch.milliseconds();
+  if (control_) control_->observe_drives(readings);
   run_stages(camera);
   check_height();
   return command_;
@@ -56,7 +60,9 @@ void Pipeline::run_stages(core::DepthSource& camera) {
   look(state_.stamp, camera);
   decide(state_);
   const Stopwatch watch;
+  const std::size_t before = allocation_count();
   command_ = control_->tick(state_);
+  events_.allocations += allocation_count() - before;
   events_.tick_ms = watch.milliseconds();
   balance(state_.stamp);
   watch_mission(state_);
@@ -226,8 +232,9 @@ void Pipeline::watch_mission(const core::RobotState& state) {
   if (control_->phase_changed() && status.phase == RobotPhase::landing) {
     landed_ = state.stamp;
     frames_since_landing_ = 0;
-    height_checked_ = false;
-    ++jumps_done_;
+    const bool jumped = status.plan_id != 0;  // and did not fall
+    height_checked_ = !jumped;
+    jumps_done_ += jumped ? 1 : 0;
   }
   const bool standing = status.phase == RobotPhase::stand || status.phase == RobotPhase::hold;
   const bool still = standing && state.v_WB.norm() < config_.runtime.settle_speed;

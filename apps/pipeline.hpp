@@ -48,6 +48,7 @@ struct PipelineEvents {
   std::optional<double> mpc_ms;
   std::optional<double> estimator_ms;
   double tick_ms = 0.0;
+  std::size_t allocations = 0;  ///< By estimator and control tick: none is right.
 };
 
 /// The whole robot brain, stage after stage, in lock-step: a stage runs when its input is there,

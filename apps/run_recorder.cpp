@@ -67,7 +67,8 @@ std::uint64_t run_identity(const RunSources& sources, const RunRequest& request)
   mix(program_version());
   mix(std::to_string(request.seed) + " " + std::to_string(request.jumps_max) + " " +
       std::to_string(static_cast<int>(request.eyes)) + " " +
-      std::to_string(static_cast<int>(request.state)));
+      std::to_string(static_cast<int>(request.state)) + " " +
+      std::string(core::ablation_name(request.ablation)));
   return hash;
 }
 

@@ -18,8 +18,11 @@ SupervisorConfig SupervisorConfig::load(const core::ConfigReader& section) {
   config.touchdown_from = section.number("touchdown_from", Range::closed(0.0, 1.0));
   config.flight_overtime = section.number("flight_overtime_s", Range::closed(0.0, 1.0));
   config.tilt_max = section.number("tilt_max_rad", Range::above(0.0, 1.57));
+  config.tilt_standing = section.number("tilt_standing_rad", Range::above(0.0, 1.57));
   config.joint_overshoot = section.number("joint_overshoot_rad", Range::closed(0.0, 1.0));
   config.joint_speed_max = section.number("joint_speed_max_rad_s", Range::positive());
+  config.joint_speed_standing = section.number("joint_speed_standing_rad_s", Range::positive());
+  config.fall_time = section.number("fall_time_s", Range::above(0.0, 1.0));
   config.rest_speed = section.number("rest_speed_mps", Range::positive());
   config.rest_rate = section.number("rest_rate_rad_s", Range::positive());
   config.commit_speed = section.number("commit_speed_mps", Range::closed(0.0, 1.0));
@@ -35,6 +38,7 @@ ControlConfig ControlConfig::load(const core::ConfigReader& section, double mpc_
   config.actuation_delay = 1e-3 * section.number("actuation_delay_ms", Range::closed(0.0, 20.0));
   config.wrench_age_max = 1e-3 * section.number("wrench_age_max_ms", Range::closed(1.0, 200.0));
   config.anchor_time = section.number("anchor_time_s", Range::closed(0.0, 1.0));
+  config.fixed_step = 1e-3 * section.number("fixed_step_ms", Range::closed(2.0, 100.0));
   config.settle_time = section.number("settle_time_s", Range::above(0.0, 3.0));
   config.wrench_mpc = WrenchMpcConfig::load(section.section("wrench_mpc"));
   config.estimator = EstimatorConfig::load(section.section("estimator"));

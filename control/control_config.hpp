@@ -2,6 +2,7 @@
 
 #include "control/estimator_config.hpp"
 #include "control/wrench_mpc.hpp"
+#include "core/ablation.hpp"
 #include "core/config_reader.hpp"
 #include "core/robot_layout.hpp"
 #include "model/robot_parameters.hpp"
@@ -22,11 +23,14 @@ struct SupervisorConfig {
   double touchdown_from = 0.0;   ///< Share of the planned flight before which contact is ignored.
   double flight_overtime = 0.0;  ///< Flight longer than planned by this is a fault [s].
   double tilt_max = 0.0;         ///< Trunk away from upright; beyond is a fault [rad].
+  double tilt_standing = 0.0;    ///< The same where the robot stands [rad].
   double joint_overshoot = 0.0;  ///< Beyond a joint range; more is a fault [rad].
   double joint_speed_max = 0.0;  ///< Any joint; more is a fault [rad/s].
-  double rest_speed = 0.0;       ///< Of the trunk; slower is at rest [m/s].
-  double rest_rate = 0.0;        ///< Of the trunk; slower is at rest [rad/s].
-  double commit_speed = 0.0;     ///< Planned rise of the CoM from which a jump must go on [m/s].
+  double joint_speed_standing = 0.0;  ///< The same where the robot stands [rad/s].
+  double fall_time = 0.0;     ///< Standing with both feet unloaded for so long is falling [s].
+  double rest_speed = 0.0;    ///< Of the trunk; slower is at rest [m/s].
+  double rest_rate = 0.0;     ///< Of the trunk; slower is at rest [rad/s].
+  double commit_speed = 0.0;  ///< Planned rise of the CoM from which a jump must go on [m/s].
 
   static SupervisorConfig load(const core::ConfigReader& section);
 };
@@ -40,6 +44,9 @@ struct ControlConfig {
   double wrench_age_max = 0.0;   ///< An MPC answer older than this is not used [s].
   double anchor_time = 0.0;  ///< After touchdown the landing follows the feet for this long [s].
   double settle_time = 0.0;  ///< From anywhere to a stand: switching on, calling a jump off [s].
+
+  double fixed_step = 0.0;  ///< Of the MPC, where the ablation asks for a fixed frequency [s].
+  core::Ablation ablation = core::Ablation::none;  ///< Set by the run, not by the configuration.
 
   WrenchMpcConfig wrench_mpc;
   EstimatorConfig estimator;

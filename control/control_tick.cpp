@@ -1,6 +1,7 @@
 #include "control/control_tick.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "control/torque_law.hpp"
 #include "model/kinematics.hpp"
@@ -62,21 +63,19 @@ void ControlTick::begin_next(const core::RobotState& state) noexcept {
   has_next_ = false;
   start_ = state.stamp;
   const auto soles = model::sole_poses(robot_, state);
-  soles_.takeoff = centres(soles);
-  anchor_.takeoff = mid_sole(soles) - planned_mid_sole(robot_, plan_.knots[0]);
-  anchor_.landing = anchor_.takeoff;
+  placement_.takeoff = {mid_sole(soles) - planned_mid_sole(robot_, plan_.knots[0]), centres(soles)};
+  placement_.landing.shift = placement_.takeoff.shift;
   for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
-    soles_.landing[leg] = plan_.target.X_WF[leg].translation() + anchor_.landing;
+    placement_.landing.soles[leg] = plan_.target.X_WF[leg].translation() + placement_.landing.shift;
   }
   supervisor_.begin_jump(plan_);
 }
 
 /// From the present motion to a stand on the present soles.
-void ControlTick::settle(const core::RobotState& state) noexcept {
-  make_settle_plan(robot_, state, stand_, config_.settle_time, plan_);
+void ControlTick::settle(const core::RobotState& state, double duration) noexcept {
+  make_settle_plan(robot_, state, stand_, duration, plan_);
   start_ = state.stamp;
-  soles_.takeoff = soles_.landing = centres(plan_.target.X_WF);
-  anchor_ = {};
+  placement_.takeoff = placement_.landing = {Eigen::Vector3d::Zero(), centres(plan_.target.X_WF)};
   touchdown_ = state.stamp;
 }
 
@@ -84,14 +83,14 @@ bool ControlTick::hold() noexcept {
   const bool pushing_off = core::is_pushing_off(phase());
   if (!supervisor_.hold()) return false;
   has_next_ = false;
-  if (pushing_off && phase() == RobotPhase::hold) settle(state_);
+  if (pushing_off && phase() == RobotPhase::hold) settle(state_, config_.settle_time);
   return true;
 }
 
 bool ControlTick::release() noexcept {
   const bool limp = core::is_limp(phase());
   if (!supervisor_.release(state_)) return false;
-  if (limp) settle(state_);
+  if (limp) settle(state_, config_.settle_time);
   return true;
 }
 
@@ -108,14 +107,15 @@ bool ControlTick::clear_fault() noexcept {
 void ControlTick::follow_feet(const core::RobotState& state) noexcept {
   if (state.stamp.since(touchdown_) > config_.anchor_time) return;
   const auto soles = model::sole_poses(robot_, state);
-  soles_.landing = centres(soles);
-  anchor_.landing = mid_sole(soles) - planned_mid_sole(robot_, plan_.knots[plan_.knot_count - 1]);
+  placement_.landing = {
+      mid_sole(soles) - planned_mid_sole(robot_, plan_.knots[plan_.knot_count - 1]),
+      centres(soles)};
 }
 
 core::RobotState ControlTick::rest_state() const noexcept {
   const core::JumpKnot& last = plan_.knots[plan_.knot_count - 1];
   core::RobotState rest = state_;
-  rest.p_WB = last.p_WB + anchor_.landing;
+  rest.p_WB = last.p_WB + placement_.landing.shift;
   rest.R_WB = model::rotation_from_rpy(last.rpy);
   rest.v_WB.setZero();
   rest.w_WB.setZero();
@@ -125,17 +125,49 @@ core::RobotState ControlTick::rest_state() const noexcept {
   return rest;
 }
 
-/// Touchdown sets the clock of the landing.
+/// From a fall to a stand in such a time that the body sinks by `kCatchDepth` in it: the easing of
+/// the settle plan sinks by 4/27 of its duration times the speed.
+double ControlTick::catch_time(const core::RobotState& state) const noexcept {
+  constexpr double kCatchDepth = 0.12;    // [m]
+  constexpr double kCatchTimeMin = 0.25;  // [s]
+  const double speed = std::max(-state.v_WB.z(), 1e-3);
+  return std::clamp(27.0 / 4.0 * kCatchDepth / speed, kCatchTimeMin, config_.settle_time);
+}
+
+/// Touchdown sets the clock of the landing; a fall from a stand begins and ends with a plan of its
+/// own.
 void ControlTick::enter_phase(const core::RobotState& state) noexcept {
   phase_changed_ = phase() != last_phase_;
+  const RobotPhase before = last_phase_;
   last_phase_ = phase();
-  if (!phase_changed_ || phase() != RobotPhase::landing) return;
-  touchdown_ = state.stamp;
-  start_ = state.stamp.after(-(plan_.touchdown_time + config_.actuation_delay));
+  if (!phase_changed_) return;
+  if (phase() == RobotPhase::flight && core::is_standing(before)) {
+    settle(state, config_.settle_time);
+  } else if (phase() == RobotPhase::landing && is_falling_) {
+    settle(state, catch_time(state));
+  } else if (phase() == RobotPhase::landing) {
+    const bool follows = config_.ablation != core::Ablation::no_landing_plan;
+    touchdown_ = state.stamp;
+    start_ = state.stamp.after(
+        -((follows ? plan_.touchdown_time : plan_.duration) + config_.actuation_delay));
+  }
+  is_falling_ = phase() == RobotPhase::flight && core::is_standing(before);
+}
+
+void ControlTick::observe_drives(const core::SensorReadings& readings) noexcept {
+  if (!core::is_standing(phase())) return;
+  delays_.received(readings);
+  if (const std::optional<double> delay = delays_.delay()) config_.actuation_delay = *delay;
 }
 
 core::JointCommand ControlTick::tick(const core::RobotState& state) noexcept {
-  if (!started_) settle(state);
+  const core::JointCommand command = next_command(state);
+  delays_.sent(command);
+  return command;
+}
+
+core::JointCommand ControlTick::next_command(const core::RobotState& state) noexcept {
+  if (!started_) settle(state, config_.settle_time);
   started_ = true;
   state_ = state;
   if (has_next_ && phase() == RobotPhase::stand) begin_next(state);
@@ -166,7 +198,9 @@ core::JointCommand ControlTick::tick(const core::RobotState& state) noexcept {
 void ControlTick::set_joint_targets(const core::RobotState& state,
                                     core::JointCommand& command) const noexcept {
   double time = command_time(state.stamp);
-  if (phase() == RobotPhase::flight) time = std::min(time, plan_.touchdown_time);
+  if (phase() == RobotPhase::flight) {
+    time = is_falling_ ? plan_.duration : std::min(time, plan_.touchdown_time);
+  }
   const core::JumpKnot planned = sample_plan(plan_, time);
   const bool compliant = phase() == RobotPhase::landing || core::is_standing(phase());
   const double scale = compliant ? config_.gains.compliant_scale : 1.0;
@@ -207,44 +241,58 @@ bool ControlTick::answer_is_fresh() const noexcept {
          state_.stamp.since(answer_.stamp) <= config_.wrench_age_max;
 }
 
+MpcForm ControlTick::takeoff_form() const noexcept {
+  const bool literal = config_.ablation == core::Ablation::paper_takeoff ||
+                       config_.ablation == core::Ablation::srbd_only;
+  return literal ? MpcForm::full : MpcForm::error_state;
+}
+
+/// The planned torques, and what the MPC wants to change of the planned wrenches.
+void ControlTick::push_off(const core::RobotState& state, const core::JumpKnot& planned,
+                           core::JointCommand& command) noexcept {
+  command.tau = planned.tau;
+  status_.wrenches = planned.wrenches;
+  if (!answer_is_fresh() || answer_.form != MpcForm::error_state) {
+    ++stale_ticks_;
+    return;
+  }
+  core::ContactWrenches deviation{};
+  for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
+    deviation[leg].force = answer_.wrenches[leg].force - answer_.planned[leg].force;
+    deviation[leg].moment = answer_.wrenches[leg].moment - answer_.planned[leg].moment;
+    status_.wrenches[leg].force += deviation[leg].force;
+    status_.wrenches[leg].moment += deviation[leg].moment;
+  }
+  command.tau += contact_torques(robot_, state, deviation);
+}
+
+/// The MPC's wrenches and the legs' own weight.
+void ControlTick::bear_load(const core::RobotState& state, core::JointCommand& command) noexcept {
+  command.tau = leg_weight_torques(robot_, state);
+  if (!answer_is_fresh() || answer_.form != MpcForm::full) {
+    ++stale_ticks_;
+    return;
+  }
+  status_.wrenches = answer_.wrenches;
+  command.tau += contact_torques(robot_, state, answer_.wrenches);
+}
+
 void ControlTick::set_feed_forward(const core::RobotState& state,
                                    core::JointCommand& command) noexcept {
   const double time = command_time(state.stamp);
   const core::JumpKnot planned = sample_plan(plan_, time);
   switch (phase()) {
     case RobotPhase::crouch:
-    case RobotPhase::takeoff: {
-      command.tau = planned.tau;
-      status_.wrenches = planned.wrenches;
-      if (!answer_is_fresh() || answer_.form != MpcForm::error_state) {
-        ++stale_ticks_;
-        return;
-      }
-      core::ContactWrenches deviation{};
-      for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
-        deviation[leg].force = answer_.wrenches[leg].force - answer_.planned[leg].force;
-        deviation[leg].moment = answer_.wrenches[leg].moment - answer_.planned[leg].moment;
-        status_.wrenches[leg].force += deviation[leg].force;
-        status_.wrenches[leg].moment += deviation[leg].moment;
-      }
-      command.tau += contact_torques(robot_, state, deviation);
-      return;
-    }
+    case RobotPhase::takeoff:
+      if (takeoff_form() == MpcForm::full) return bear_load(state, command);
+      return push_off(state, planned, command);
     case RobotPhase::flight:
       if (time <= plan_.touchdown_time) command.tau = planned.tau;
       return;
     case RobotPhase::landing:
     case RobotPhase::recover:
     case RobotPhase::hold:
-    case RobotPhase::stand:
-      command.tau = leg_weight_torques(robot_, state);
-      if (!answer_is_fresh()) {
-        ++stale_ticks_;
-        return;
-      }
-      status_.wrenches = answer_.wrenches;
-      command.tau += contact_torques(robot_, state, answer_.wrenches);
-      return;
+    case RobotPhase::stand: return bear_load(state, command);
     case RobotPhase::damp:
     case RobotPhase::fault: return;
   }
@@ -253,11 +301,15 @@ void ControlTick::set_feed_forward(const core::RobotState& state,
 void ControlTick::question(MpcQuestion& out) const noexcept {
   const double delay = config_.mpc_delay + config_.actuation_delay;
   out.state = extrapolate(state_, delay);
-  out.form = core::is_pushing_off(phase()) ? MpcForm::error_state : MpcForm::full;
+  out.form = core::is_pushing_off(phase()) ? takeoff_form() : MpcForm::full;
   out.reference.stamp = out.state.stamp;
   // The body runs `actuation_delay` behind the commands; it will have moved on by `delay`.
-  fill_reference(plan_, command_time(state_.stamp) + config_.mpc_delay, anchor_, soles_,
-                 out.reference);
+  const double time = command_time(state_.stamp) + config_.mpc_delay;
+  if (config_.ablation == core::Ablation::fixed_frequency) {
+    fill_reference_fixed(plan_, time, placement_, config_.fixed_step, out.reference);
+  } else {
+    fill_reference(plan_, time, placement_, out.reference);
+  }
 }
 
 }  // namespace hopscotch::control

@@ -6,6 +6,7 @@
 
 #include "control/contact_detector.hpp"
 #include "control/control_config.hpp"
+#include "control/delay_estimator.hpp"
 #include "control/jump_supervisor.hpp"
 #include "control/plan_follower.hpp"
 #include "control/stand_plan.hpp"
@@ -15,6 +16,7 @@
 #include "core/joint_command.hpp"
 #include "core/jump_plan.hpp"
 #include "core/robot_state.hpp"
+#include "core/sensor_readings.hpp"
 #include "model/robot_parameters.hpp"
 
 namespace hopscotch::control {
@@ -47,6 +49,13 @@ class ControlTick {
   /// @param stand Where jumps start and end; the first tick goes there from where the robot is.
   ControlTick(const ControlConfig& config, const model::RobotParameters& robot,
               const StandTarget& stand);
+
+  /// Lets the measured torques tell how late commands act, while the robot stands; until that is
+  /// clear the configured delay counts. To be called before `tick`, with readings of the same
+  /// stamp.
+  void observe_drives(const core::SensorReadings& readings) noexcept;
+  /// As known by now [s].
+  [[nodiscard]] double actuation_delay() const { return config_.actuation_delay; }
 
   /// One millisecond. Returns the set-points of the drives.
   core::JointCommand tick(const core::RobotState& state) noexcept;
@@ -90,11 +99,17 @@ class ControlTick {
  private:
   [[nodiscard]] double command_time(core::Stamp now) const noexcept;
   void begin_next(const core::RobotState& state) noexcept;
-  void settle(const core::RobotState& state) noexcept;
+  void settle(const core::RobotState& state, double duration) noexcept;
+  [[nodiscard]] double catch_time(const core::RobotState& state) const noexcept;
+  [[nodiscard]] core::JointCommand next_command(const core::RobotState& state) noexcept;
   void enter_phase(const core::RobotState& state) noexcept;
   void follow_feet(const core::RobotState& state) noexcept;
   void set_joint_targets(const core::RobotState& state, core::JointCommand& command) const noexcept;
   void set_feed_forward(const core::RobotState& state, core::JointCommand& command) noexcept;
+  void push_off(const core::RobotState& state, const core::JumpKnot& planned,
+                core::JointCommand& command) noexcept;
+  void bear_load(const core::RobotState& state, core::JointCommand& command) noexcept;
+  [[nodiscard]] MpcForm takeoff_form() const noexcept;
   [[nodiscard]] bool answer_is_fresh() const noexcept;
 
   ControlConfig config_;
@@ -109,8 +124,9 @@ class ControlTick {
   core::RobotPhase last_phase_ = core::RobotPhase::stand;  ///< At the end of the last tick.
   bool phase_changed_ = false;
   core::Stamp touchdown_;
-  PlanAnchor anchor_;
-  PlannedSoles soles_{};
+  PlanPlacement placement_;
+  bool is_falling_ = false;  ///< In flight without a jump.
+  DelayEstimator delays_;
   core::RobotState state_;
   MpcAnswer answer_;
   core::ControlStatus status_;

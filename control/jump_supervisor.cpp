@@ -34,11 +34,19 @@ Reason JumpSupervisor::find_fault(const core::RobotState& state) const noexcept 
   const bool finite = state.q.allFinite() && state.dq.allFinite() && state.p_WB.allFinite() &&
                       state.R_WB.allFinite() && state.v_WB.allFinite() && state.w_WB.allFinite();
   if (!finite) return Reason::bad_sensor_value;
-  if (state.R_WB(2, 2) < std::cos(config_.tilt_max)) return Reason::tilt_limit;
+  const bool standing = core::is_standing(phase_);
+  const double tilt = standing ? config_.tilt_standing : config_.tilt_max;
+  if (state.R_WB(2, 2) < std::cos(tilt)) return Reason::tilt_limit;
   const double beyond = std::max((lower_ - state.q).maxCoeff(), (state.q - upper_).maxCoeff());
   if (beyond > config_.joint_overshoot) return Reason::joint_limit;
-  if (state.dq.cwiseAbs().maxCoeff() > config_.joint_speed_max) return Reason::joint_limit;
+  const double speed = standing ? config_.joint_speed_standing : config_.joint_speed_max;
+  if (state.dq.cwiseAbs().maxCoeff() > speed) return Reason::joint_limit;
   return Reason::none;
+}
+
+bool JumpSupervisor::falls(const core::RobotState& state) noexcept {
+  if (state.contact[0] || state.contact[1] || loaded_ > state.stamp) loaded_ = state.stamp;
+  return core::is_standing(phase_) && state.stamp.since(loaded_) >= config_.fall_time;
 }
 
 bool JumpSupervisor::at_rest(const core::RobotState& state) const noexcept {
@@ -81,6 +89,11 @@ RobotPhase JumpSupervisor::update(const core::RobotState& state, const core::Jum
                                   double plan_time) noexcept {
   if (const Reason fault = find_fault(state); fault != Reason::none && phase_ != RobotPhase::damp) {
     latch(fault);
+  }
+  if (falls(state)) {
+    hold_waits_ = hold_waits_ || phase_ == RobotPhase::hold;
+    phase_ = RobotPhase::flight;
+    return phase_;
   }
   advance(state, plan, plan_time);
   if (hold_waits_ && core::is_standing(phase_)) {

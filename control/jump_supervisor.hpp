@@ -19,6 +19,7 @@ namespace hopscotch::control {
 /// | landing                      | stand   | the plan's duration has passed, at rest         |
 /// | landing                      | recover | the plan's duration has passed, not at rest     |
 /// | recover                      | stand   | at rest                                         |
+/// | stand, recover, hold         | flight  | both feet unloaded for `fall_time`: it falls    |
 /// | stand, crouch, recover       | hold    | the operator's hold                             |
 /// | takeoff, flight, landing     | hold    | a hold asked for there, once stand or recover   |
 /// | hold                         | stand   | the operator's release                          |
@@ -62,6 +63,7 @@ class JumpSupervisor {
 
  private:
   [[nodiscard]] core::Reason find_fault(const core::RobotState& state) const noexcept;
+  [[nodiscard]] bool falls(const core::RobotState& state) noexcept;
   [[nodiscard]] bool at_rest(const core::RobotState& state) const noexcept;
   void advance(const core::RobotState& state, const core::JumpPlan& plan,
                double plan_time) noexcept;
@@ -73,6 +75,7 @@ class JumpSupervisor {
   core::Reason fault_ = core::Reason::none;
   double commit_time_ = 0.0;  ///< Of the plan being executed [s].
   bool hold_waits_ = false;
+  core::Stamp loaded_;  ///< A foot bore load for the last time.
 };
 
 /// The last moment of a plan's takeoff at which its CoM rises no faster than `speed` [m/s]: until

@@ -113,27 +113,40 @@ double step_length(const core::JumpPlan& plan, double time) {
   return dt;
 }
 
+/// One knot of the window and the step that begins there.
+void fill_knot(const core::JumpPlan& plan, double t, double dt, const PlanPlacement& placement,
+               core::ReferenceKnot& knot) {
+  const core::JumpKnot state = sample_plan(plan, t);
+  const core::JumpKnot step = sample_plan(plan, t + 0.5 * dt);
+  const bool landed = t >= plan.touchdown_time - kShortestStep;
+  const PlanPlacement::Side& side = landed ? placement.landing : placement.takeoff;
+  knot.dt = dt;
+  knot.contact = step.contact;
+  knot.p_WG = state.p_WG + side.shift;
+  knot.rpy = state.rpy;
+  knot.v_WG = state.v_WG;
+  knot.w_WB = state.w_WB;
+  knot.p_WF = side.soles;
+  knot.wrenches = step.wrenches;
+}
+
 }  // namespace
 
-void fill_reference(const core::JumpPlan& plan, double time, const PlanAnchor& anchor,
-                    const PlannedSoles& soles, core::ControlReference& reference) noexcept {
+void fill_reference(const core::JumpPlan& plan, double time, const PlanPlacement& placement,
+                    core::ControlReference& reference) noexcept {
   double t = std::max(time, 0.0);
   for (std::size_t k = 0; k <= reference.horizon; ++k) {
     const double dt = step_length(plan, t);
-    const core::JumpKnot state = sample_plan(plan, t);
-    const core::JumpKnot step = sample_plan(plan, t + 0.5 * dt);
-    const bool landed = t >= plan.touchdown_time - kShortestStep;
-    const Eigen::Vector3d& shift = landed ? anchor.landing : anchor.takeoff;
-    core::ReferenceKnot& knot = reference.knots[k];
-    knot.dt = dt;
-    knot.contact = step.contact;
-    knot.p_WG = state.p_WG + shift;
-    knot.rpy = state.rpy;
-    knot.v_WG = state.v_WG;
-    knot.w_WB = state.w_WB;
-    knot.p_WF = landed ? soles.landing : soles.takeoff;
-    knot.wrenches = step.wrenches;
+    fill_knot(plan, t, dt, placement, reference.knots[k]);
     t += dt;
+  }
+}
+
+void fill_reference_fixed(const core::JumpPlan& plan, double time, const PlanPlacement& placement,
+                          double step, core::ControlReference& reference) noexcept {
+  for (std::size_t k = 0; k <= reference.horizon; ++k) {
+    fill_knot(plan, std::max(time, 0.0) + static_cast<double>(k) * step, step, placement,
+              reference.knots[k]);
   }
 }
 

@@ -16,23 +16,28 @@ namespace hopscotch::control {
 /// The last knot at or before `time`. Real-time safe.
 [[nodiscard]] std::size_t knot_index(const core::JumpPlan& plan, double time) noexcept;
 
-/// How the plan is laid over what really happened.
-struct PlanAnchor {
-  Eigen::Vector3d takeoff =
-      Eigen::Vector3d::Zero();  ///< Added to planned positions before touchdown [m].
-  Eigen::Vector3d landing = Eigen::Vector3d::Zero();  ///< Added to planned positions after it [m].
+/// How the plan is laid over what really happened: what is added to planned positions, and where
+/// the soles are, before touchdown and after it, all in W [m].
+struct PlanPlacement {
+  struct Side {
+    Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+    std::array<Eigen::Vector3d, core::kLegs> soles{Eigen::Vector3d::Zero(),
+                                                   Eigen::Vector3d::Zero()};
+  };
+  Side takeoff;
+  Side landing;
 };
 
 /// The window of eq. (13): `horizon` steps from `time` on with the plan's own step lengths; a step
 /// ends early where a phase does, so that contacts change only at knots. Past the end of the plan
 /// the last knot is held with the last step length.
-/// @param soles Sole centres before and after the flight: [0] takeoff, [1] landing, each per leg,
-/// in W.
-struct PlannedSoles {
-  std::array<Eigen::Vector3d, core::kLegs> takeoff;
-  std::array<Eigen::Vector3d, core::kLegs> landing;
-};
-void fill_reference(const core::JumpPlan& plan, double time, const PlanAnchor& anchor,
-                    const PlannedSoles& soles, core::ControlReference& reference) noexcept;
+void fill_reference(const core::JumpPlan& plan, double time, const PlanPlacement& placement,
+                    core::ControlReference& reference) noexcept;
+
+/// The same with steps of one length, which the phases do not cut: the fixed frequency that the
+/// paper compares with.
+/// @param step > 0 [s].
+void fill_reference_fixed(const core::JumpPlan& plan, double time, const PlanPlacement& placement,
+                          double step, core::ControlReference& reference) noexcept;
 
 }  // namespace hopscotch::control

@@ -134,6 +134,7 @@ struct MujocoPlant::World {
   JointVector speed_at_tau = JointVector::Zero();  // joint speeds it was limited for [rad/s]
   core::SensorReadings drive_reading;              // of this tick, at the drives
   core::SensorReadings delivered;                  // what the host has got last
+  Vector3d force_sum = Vector3d::Zero();           // specific force since then, in B [m/s^2]
   std::string fault;
 };
 
@@ -213,7 +214,13 @@ void MujocoPlant::World::step(const core::JointCommand& command) {
   ++tick;
   const Vector3d v_after = Eigen::Map<const Vector3d>(data->qvel);
   drive_reading = sensors.measure(perfect_readings((v_after - before.v_WB) / kTick));
-  if (tick % exchange_period == 0) delivered = drive_reading;
+  force_sum += drive_reading.f_B;
+  if (tick % exchange_period == 0) {
+    // The inertial sensor integrates between exchanges; nothing of a short impact is lost.
+    delivered = drive_reading;
+    delivered.f_B = force_sum / exchange_period;
+    force_sum.setZero();
+  }
   fault = fault_sentence(*model, *data);
 }
 

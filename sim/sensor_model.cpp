@@ -11,9 +11,13 @@ double rounded_to(double value, double step) {
   return step > 0.0 ? step * std::round(value / step) : value;
 }
 
-Eigen::Vector3d saturated(const Eigen::Vector3d& value, double range) {
-  return value.cwiseMax(-range).cwiseMin(range);
+Eigen::Vector3d digitised(const Eigen::Vector3d& value, double step, double range) {
+  return value.unaryExpr([&](double x) { return rounded_to(x, step); })
+      .cwiseMax(-range)
+      .cwiseMin(range);
 }
+
+constexpr double kTick = 0.001;  // [s] between calls
 
 }  // namespace
 
@@ -29,10 +33,15 @@ core::SensorReadings SensorModel::measure(const core::SensorReadings& truth) {
   for (double& angle : reading.q) angle = rounded_to(angle, scale_ * SensorErrors::kAngleStep);
   reading.dq += scale_ * SensorErrors::kSpeedSigma * random_.normal_vector<core::kJoints>();
   reading.tau += scale_ * SensorErrors::kTorqueSigma * random_.normal_vector<core::kJoints>();
+  const double walked = scale_ * std::sqrt(kTick);
+  rate_bias_ += walked * SensorErrors::kRateWalk * random_.normal_vector<3>();
+  force_bias_ += walked * SensorErrors::kForceWalk * random_.normal_vector<3>();
   reading.w_WB_B += rate_bias_ + scale_ * SensorErrors::kRateSigma * random_.normal_vector<3>();
-  reading.w_WB_B = saturated(reading.w_WB_B, SensorErrors::kRateRange);
+  reading.w_WB_B =
+      digitised(reading.w_WB_B, scale_ * SensorErrors::kRateStep, SensorErrors::kRateRange);
   reading.f_B += force_bias_ + scale_ * SensorErrors::kForceSigma * random_.normal_vector<3>();
-  reading.f_B = saturated(reading.f_B, SensorErrors::kForceRange);
+  reading.f_B =
+      digitised(reading.f_B, scale_ * SensorErrors::kForceStep, SensorErrors::kForceRange);
   return reading;
 }
 

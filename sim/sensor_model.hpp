@@ -16,12 +16,17 @@ struct SensorErrors {
   static constexpr double kAngleSigma = 2e-4;  ///< Belt and gear play that the step hides [rad].
   static constexpr double kSpeedSigma =
       0.03;  ///< Differentiated and filtered by the drive [rad/s].
-  static constexpr double kTorqueSigma = 0.2;   ///< From the motor current [N·m].
-  static constexpr double kRateSigma = 0.005;   ///< 1.6e-4 rad/s/sqrt(Hz), MEMS class [rad/s].
-  static constexpr double kRateBias = 0.005;    ///< Constant in a run, uniform in +- this [rad/s].
-  static constexpr double kRateRange = 34.9;    ///< 2000 deg/s, saturates [rad/s].
-  static constexpr double kForceSigma = 0.05;   ///< [m/s^2]
-  static constexpr double kForceBias = 0.05;    ///< Constant in a run, uniform in +- this [m/s^2].
+  static constexpr double kTorqueSigma = 0.2;  ///< From the motor current [N·m].
+  static constexpr double kRateSigma = 0.005;  ///< 1.6e-4 rad/s/sqrt(Hz), MEMS class [rad/s].
+  static constexpr double kRateBias =
+      0.005;                                 ///< At the start of a run, uniform in +- this [rad/s].
+  static constexpr double kRateWalk = 1e-5;  ///< Of the bias [rad/s/sqrt(s)].
+  static constexpr double kRateStep = 2.0 * 34.9 / 65536.0;  ///< 16 bits over the range [rad/s].
+  static constexpr double kRateRange = 34.9;                 ///< 2000 deg/s, saturates [rad/s].
+  static constexpr double kForceSigma = 0.05;                ///< [m/s^2]
+  static constexpr double kForceBias = 0.05;  ///< At the start, uniform in +- this [m/s^2].
+  static constexpr double kForceWalk = 1e-4;  ///< Of the bias [m/s^2/sqrt(s)].
+  static constexpr double kForceStep = 2.0 * 156.9 / 65536.0;  ///< 16 bits [m/s^2].
   static constexpr double kForceRange = 156.9;  ///< 16 g, saturates in impacts [m/s^2].
 };
 
@@ -32,7 +37,7 @@ class SensorModel {
   SensorModel(std::uint64_t seed, double scale);
 
   /// @param truth The true values of this tick.
-  /// @return What the sensors say; one draw of noise per call.
+  /// @return What the sensors say; one draw of noise and 1 ms of bias walk per call.
   [[nodiscard]] core::SensorReadings measure(const core::SensorReadings& truth);
 
  private:

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "apps/bench.hpp"
 #include "apps/lockstep_run.hpp"
 
 namespace hopscotch::apps {
@@ -101,6 +102,69 @@ TEST(Scenario, HeadingDoesNotMatter) {
   EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
   ASSERT_EQ(result.jumps.size(), 2U);
   EXPECT_NEAR(result.jumps[1].landing.distance, result.jumps[1].target.distance, 0.04);
+}
+
+/// The promises of the estimator, on ten leaps; `hopscotch bench estimator --jumps 1000` has the
+/// figures.
+TEST(Scenario, TheEstimateIsGoodEnoughToLandOn) {
+  const std::string config(kConfig);
+  const BenchSetup setup{ProgramConfig::load(config + "hopscotch.yaml"),
+                         model::RobotParameters::load(config + "robots/hector.yaml")};
+  const auto score = bench_estimator(setup, 10);
+  EXPECT_EQ(score["jumps"], 10);
+  EXPECT_EQ(score["falls"], 0);
+  EXPECT_LE(score["takeoff_speed_rmse_mps"], 0.05);
+  EXPECT_LE(score["pitch_rmse_rad"], 0.026);
+  EXPECT_LE(score["landing_rmse_m"], 0.03);
+  EXPECT_LE(score["touchdown_ms"]["max"], 6.0);
+  EXPECT_EQ(score["false_touchdowns"], 0);
+  // Of six degrees of freedom: neither overconfident nor useless.
+  EXPECT_LE(score["nees_of_six"], 8.0);
+  EXPECT_GE(score["nees_of_six"], 0.6);
+}
+
+TEST(Scenario, TheTickTakesNothingFromTheHeap) {
+  const std::string config(kConfig);
+  const BenchSetup setup{ProgramConfig::load(config + "hopscotch.yaml"),
+                         model::RobotParameters::load(config + "robots/hector.yaml")};
+  const auto ticks = bench_tick(setup);
+  EXPECT_GT(ticks["n"], 3000);
+  EXPECT_EQ(ticks["allocations"], 0);
+}
+
+TEST(Scenario, AFallOfFortyCentimetresIsCaught) {
+  const RunResult result = run_text(
+      "name: dropped\n"
+      "slabs:\n"
+      "  - {x_m: [-1.0, 4.0]}\n"
+      "start: {drop_m: 0.4}\n"
+      "goal: {jumps: 1}\n");
+  EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
+  EXPECT_EQ(result.jumps.size(), 1U);
+}
+
+TEST(Scenario, EachAblationIsDifferent) {
+  RunRequest request = request_of(
+      sim::Scenario::load(std::string(kConfig) + "scenarios/flat-leaps.yaml"), Eyes::truth, 2);
+  request.jumps_max = 1;
+  const RunResult whole = result_of(request);
+  for (std::size_t i = 1; i < core::kAblationNames.size(); ++i) {
+    request.ablation = static_cast<core::Ablation>(i);
+    const RunResult less = result_of(request);
+    ASSERT_FALSE(less.jumps.empty()) << core::kAblationNames[i];
+    EXPECT_NE(less.jumps[0].peak.normal_force, whole.jumps[0].peak.normal_force)
+        << core::kAblationNames[i];
+  }
+}
+
+TEST(Scenario, TheTrueStateStillFlies) {
+  RunRequest request = request_of(
+      sim::Scenario::load(std::string(kConfig) + "scenarios/flat-leaps.yaml"), Eyes::truth, 3);
+  request.state = StateSource::truth;
+  const RunResult result = result_of(request);
+  EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
+  EXPECT_EQ(result.state, "truth");
+  EXPECT_EQ(result.position_error, 0.0);
 }
 
 TEST(Scenario, SameSeedSameRun) {

@@ -23,8 +23,11 @@ ControlConfig test_config() {
   config.supervisor = {.touchdown_from = 0.5,
                        .flight_overtime = 0.1,
                        .tilt_max = 1.25,
+                       .tilt_standing = 0.9,
                        .joint_overshoot = 0.35,
                        .joint_speed_max = 40.0,
+                       .joint_speed_standing = 20.0,
+                       .fall_time = 0.02,
                        .rest_speed = 0.25,
                        .rest_rate = 1.0,
                        .commit_speed = 0.2};
@@ -33,6 +36,7 @@ ControlConfig test_config() {
   config.wrench_age_max = 0.025;
   config.anchor_time = 0.15;
   config.settle_time = 0.4;
+  config.fixed_step = 0.03;
   return config;
 }
 
@@ -270,6 +274,58 @@ TEST_F(ControlTickTest, DampedItBrakesUntilReleased) {
   const core::JointCommand command = step(control);
   EXPECT_EQ(command.mode, core::DriveMode::active);
   EXPECT_NEAR((command.q - state_.q).norm(), 0.0, 1e-4);  // one tick on its way
+}
+
+TEST_F(ControlTickTest, AFallFromAStandIsCaught) {
+  ControlTick control = standing();
+  step(control);
+  state_.contact = {false, false};
+  for (int i = 0; i < 30; ++i) step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::flight);
+  state_.v_WB.z() = -2.0;
+  state_.contact = {true, true};
+  step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::landing);
+  MpcQuestion question;
+  question.reference.horizon = 10;
+  control.question(question);
+  EXPECT_LT(question.reference.knots[0].v_WG.z(), -1.5);  // goes on from the present motion
+  EXPECT_LT(question.reference.knots[5].p_WG.z(), question.reference.knots[0].p_WG.z());
+  state_.v_WB.setZero();
+  for (int i = 0; i < 500; ++i) step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::stand);
+}
+
+TEST_F(ControlTickTest, AblationsChangeWhatTheyName) {
+  ControlConfig config = test_config();
+  MpcQuestion question;
+  question.reference.horizon = 10;
+  config.ablation = core::Ablation::paper_takeoff;
+  ControlTick literal{config, robot_, StandTarget{state_.q, 0.0}};
+  step(literal);
+  literal.offer(plan_);
+  const core::JointCommand command = step(literal);
+  EXPECT_LT((command.tau - leg_weight_torques(robot_, state_)).norm(), 1e-12);  // no plan's torque
+  literal.question(question);
+  EXPECT_EQ(question.form, MpcForm::full);
+
+  config.ablation = core::Ablation::fixed_frequency;
+  ControlTick fixed{config, robot_, StandTarget{state_.q, 0.0}};
+  step(fixed);
+  fixed.offer(plan_);
+  step(fixed);
+  fixed.question(question);
+  for (std::size_t k = 0; k < 10; ++k) EXPECT_DOUBLE_EQ(question.reference.knots[k].dt, 0.03);
+
+  config.ablation = core::Ablation::no_landing_plan;
+  ControlTick unplanned{config, robot_, StandTarget{state_.q, 0.0}};
+  step(unplanned);
+  unplanned.offer(plan_);
+  run_to(unplanned, RobotPhase::flight);
+  for (int i = 0; i < 60; ++i) step(unplanned);
+  state_.contact = {true, true};
+  step(unplanned);
+  EXPECT_GT(unplanned.status().plan_time, plan_.duration - 0.003);
 }
 
 TEST_F(ControlTickTest, AFaultDampsAndStaysSo) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "model/kinematics.hpp"
@@ -16,8 +19,11 @@ using core::RobotPhase;
 const SupervisorConfig kConfig{.touchdown_from = 0.5,
                                .flight_overtime = 0.1,
                                .tilt_max = 1.25,
+                               .tilt_standing = 0.9,
                                .joint_overshoot = 0.35,
                                .joint_speed_max = 40.0,
+                               .joint_speed_standing = 20.0,
+                               .fall_time = 0.02,
                                .rest_speed = 0.25,
                                .rest_rate = 1.0,
                                .commit_speed = 0.2};
@@ -108,6 +114,156 @@ TEST_F(JumpSupervisorTest, EachLimitIsAFaultInEachPhase) {
     EXPECT_EQ(fault_of([](core::RobotState& s) { s.q[3] = 0.5; }), Reason::joint_limit);
     EXPECT_EQ(fault_of([](core::RobotState& s) { s.dq[0] = -50.0; }), Reason::joint_limit);
   }
+}
+
+TEST_F(JumpSupervisorTest, StandingLimitsAreTighter) {
+  state_.R_WB = model::rotation_from_rpy({0.0, 1.0, 0.0});
+  supervisor_.begin_jump(plan_);
+  EXPECT_EQ(supervisor_.update(state_, plan_, 0.05), RobotPhase::crouch);
+  JumpSupervisor standing(kConfig, robot_);
+  EXPECT_EQ(standing.update(state_, plan_, 0.05), RobotPhase::fault);
+}
+
+TEST_F(JumpSupervisorTest, AStandWithoutGroundIsAFall) {
+  state_.contact = {false, false};
+  RobotPhase phase = RobotPhase::stand;
+  for (int tick = 0; tick <= 20; ++tick) {
+    state_.stamp = core::Stamp::from_seconds(0.001 * tick);
+    phase = supervisor_.update(state_, plan_, 1.0);
+    if (tick < 20) {
+      EXPECT_EQ(phase, RobotPhase::stand) << tick;
+    }
+  }
+  EXPECT_EQ(phase, RobotPhase::flight);
+}
+
+/// What can happen to the machine besides time.
+enum class Event { begin, hold, release, damp, clear, fault };
+constexpr std::array<Event, 6> kEvents{Event::begin, Event::hold,  Event::release,
+                                       Event::damp,  Event::clear, Event::fault};
+constexpr std::array<RobotPhase, 9> kPhases{
+    RobotPhase::stand,  RobotPhase::crouch,  RobotPhase::takeoff,
+    RobotPhase::flight, RobotPhase::landing, RobotPhase::recover,
+    RobotPhase::hold,   RobotPhase::damp,    RobotPhase::fault};
+
+struct Outcome {
+  RobotPhase phase;
+  bool accepted;
+};
+
+/// The table of jump_supervisor.hpp as far as events go, written down a second time.
+Outcome expected_outcome(RobotPhase from, Event event) {
+  const bool limp = core::is_limp(from);
+  switch (event) {
+    case Event::begin: {
+      const bool starts = from == RobotPhase::stand || from == RobotPhase::landing;
+      return {starts ? RobotPhase::crouch : from, true};
+    }
+    case Event::hold: {
+      const bool at_once = core::is_standing(from) || from == RobotPhase::crouch;
+      return {at_once ? RobotPhase::hold : from, !limp};
+    }
+    case Event::release:
+      if (from == RobotPhase::hold || from == RobotPhase::damp) return {RobotPhase::stand, true};
+      return {from, !limp};
+    case Event::damp:
+      if (from == RobotPhase::fault) return {from, false};
+      return {RobotPhase::damp, true};
+    case Event::clear:
+      if (from == RobotPhase::fault) return {RobotPhase::damp, true};
+      return {from, false};
+    case Event::fault: return {RobotPhase::fault, true};
+  }
+  return {from, false};
+}
+
+class EveryPhase : public JumpSupervisorTest {
+ protected:
+  /// A machine that has come to `phase` by the way of the table.
+  JumpSupervisor at(RobotPhase phase) {
+    JumpSupervisor machine(kConfig, robot_);
+    core::RobotState state = state_;
+    if (phase == RobotPhase::hold) EXPECT_TRUE(machine.hold());
+    if (phase == RobotPhase::damp) EXPECT_TRUE(machine.damp());
+    if (phase == RobotPhase::fault) machine.latch(Reason::stale_sensors);
+    const std::vector<std::pair<RobotPhase, double>> way{{RobotPhase::crouch, 0.01},
+                                                         {RobotPhase::takeoff, 0.15},
+                                                         {RobotPhase::flight, 0.21},
+                                                         {RobotPhase::landing, 0.3},
+                                                         {RobotPhase::recover, 0.43}};
+    const bool jumps =
+        std::any_of(way.begin(), way.end(), [&](const auto& step) { return step.first == phase; });
+    if (jumps) machine.begin_jump(plan_);
+    for (const auto& [name, time] : way) {
+      if (machine.phase() == phase) break;
+      if (name == RobotPhase::recover) state.v_WB.x() = 1.0;
+      machine.update(state, plan_, time);
+    }
+    EXPECT_EQ(machine.phase(), phase);
+    return machine;
+  }
+
+  bool cause(JumpSupervisor& machine, Event event) {
+    switch (event) {
+      case Event::begin: machine.begin_jump(plan_); return true;
+      case Event::hold: return machine.hold();
+      case Event::release: return machine.release(state_);
+      case Event::damp: return machine.damp();
+      case Event::clear: return machine.clear_fault();
+      case Event::fault: machine.latch(Reason::deadline); return true;
+    }
+    return false;
+  }
+};
+
+TEST_F(EveryPhase, AnswersEachEventAsTheTableSays) {
+  for (const RobotPhase phase : kPhases) {
+    for (const Event event : kEvents) {
+      JumpSupervisor machine = at(phase);
+      const bool accepted = cause(machine, event);
+      const Outcome expected = expected_outcome(phase, event);
+      EXPECT_EQ(machine.phase(), expected.phase)
+          << core::robot_phase_name(phase) << ", event " << static_cast<int>(event);
+      EXPECT_EQ(accepted, expected.accepted)
+          << core::robot_phase_name(phase) << ", event " << static_cast<int>(event);
+    }
+  }
+}
+
+TEST_F(EveryPhase, AHoldThatWaitedHoldsAfterTheLanding) {
+  for (const RobotPhase phase : {RobotPhase::takeoff, RobotPhase::flight, RobotPhase::landing}) {
+    JumpSupervisor machine = at(phase);
+    EXPECT_TRUE(machine.hold());
+    EXPECT_TRUE(machine.hold_waits());
+    machine.update(state_, plan_, 0.25);
+    machine.update(state_, plan_, 0.30);
+    machine.update(state_, plan_, 0.43);
+    EXPECT_EQ(machine.phase(), RobotPhase::hold) << core::robot_phase_name(phase);
+    EXPECT_FALSE(machine.hold_waits());
+  }
+}
+
+TEST_F(EveryPhase, ABadNumberIsAFaultButWhereTheRobotIsLimp) {
+  core::RobotState bad = state_;
+  bad.dq[4] = core::kNaN;
+  for (const RobotPhase phase : kPhases) {
+    JumpSupervisor machine = at(phase);
+    machine.update(bad, plan_, 0.1);
+    EXPECT_EQ(machine.phase(), phase == RobotPhase::damp ? RobotPhase::damp : RobotPhase::fault);
+  }
+}
+
+TEST_F(EveryPhase, ALimpRobotStaysDownWhenItCannotStand) {
+  JumpSupervisor machine = at(RobotPhase::damp);
+  core::RobotState lying = state_;
+  lying.R_WB = model::rotation_from_rpy({1.4, 0.0, 0.0});
+  EXPECT_FALSE(machine.release(lying));
+  EXPECT_EQ(machine.phase(), RobotPhase::damp);
+}
+
+TEST_F(JumpSupervisorTest, TheCommitPointIsWhereTheBodyBeginsToRise) {
+  EXPECT_DOUBLE_EQ(commit_time(plan_, 0.2), plan_.knots[4].time);  // it rises from knot 5 on
+  EXPECT_DOUBLE_EQ(commit_time(plan_, 2.0), plan_.knots[9].time);
 }
 
 TEST_F(JumpSupervisorTest, TheFirstFaultIsLatched) {

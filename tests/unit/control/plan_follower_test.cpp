@@ -53,17 +53,32 @@ TEST(PlanFollower, TimeIsClampedToThePlan) {
   EXPECT_NEAR(sample_plan(kPlan, 9.0).p_WG.x(), 0.42 * 0.42, 1e-12);
 }
 
+PlanPlacement placement() {
+  PlanPlacement placement;
+  placement.takeoff.shift = {1.0, 0.0, 0.0};
+  placement.landing.shift = {2.0, 0.0, 0.0};
+  placement.takeoff.soles = {Eigen::Vector3d(0, 0.1, 0), Eigen::Vector3d(0, -0.1, 0)};
+  placement.landing.soles = {Eigen::Vector3d(0.4, 0.1, 0), Eigen::Vector3d(0.4, -0.1, 0)};
+  return placement;
+}
+
 core::ControlReference window(double time, std::size_t horizon) {
   core::ControlReference reference;
   reference.horizon = horizon;
-  PlanAnchor anchor;
-  anchor.takeoff = {1.0, 0.0, 0.0};
-  anchor.landing = {2.0, 0.0, 0.0};
-  PlannedSoles soles;
-  soles.takeoff = {Eigen::Vector3d(0, 0.1, 0), Eigen::Vector3d(0, -0.1, 0)};
-  soles.landing = {Eigen::Vector3d(0.4, 0.1, 0), Eigen::Vector3d(0.4, -0.1, 0)};
-  fill_reference(kPlan, time, anchor, soles, reference);
+  fill_reference(kPlan, time, placement(), reference);
   return reference;
+}
+
+TEST(PlanFollower, AFixedFrequencyIgnoresThePlansSteps) {
+  core::ControlReference reference;
+  reference.horizon = 8;
+  fill_reference_fixed(kPlan, 0.17, placement(), 0.03, reference);
+  for (std::size_t k = 0; k <= reference.horizon; ++k) {
+    EXPECT_DOUBLE_EQ(reference.knots[k].dt, 0.03);
+  }
+  EXPECT_TRUE(reference.knots[0].contact[0]);
+  EXPECT_FALSE(reference.knots[1].contact[0]);
+  EXPECT_NEAR(reference.knots[1].p_WG.x(), 0.2 * 0.2 + 1.0, 1e-12);
 }
 
 TEST(PlanFollower, WindowUsesThePlansOwnStepLengths) {

@@ -54,7 +54,18 @@ TEST(SensorModel, AnglesComeInWholeSteps) {
   }
 }
 
-TEST(SensorModel, BiasIsConstantInARunAndBounded) {
+TEST(SensorModel, TheInertialSensorHasSixteenBits) {
+  SensorModel sensors(5, 1.0);
+  const core::SensorReadings reading = sensors.measure(at_rest());
+  for (int axis = 0; axis < 3; ++axis) {
+    const double rate = reading.w_WB_B[axis] / SensorErrors::kRateStep;
+    const double force = reading.f_B[axis] / SensorErrors::kForceStep;
+    EXPECT_NEAR(rate, std::round(rate), 1e-6);
+    EXPECT_NEAR(force, std::round(force), 1e-6);
+  }
+}
+
+TEST(SensorModel, BiasStaysInARunAndIsBounded) {
   constexpr int kSamples = 4000;
   const double of_the_mean = 5.0 * SensorErrors::kRateSigma / std::sqrt(kSamples);
   for (const std::uint64_t seed : {1U, 2U, 3U}) {

@@ -1,0 +1,46 @@
+#include "apps/allocation_count.hpp"
+
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+// Counting must not itself need the heap or a lock, hence at namespace scope.
+thread_local std::size_t g_count = 0;
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++g_count;
+  const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
+  void* memory = std::aligned_alloc(alignment, rounded > 0 ? rounded : alignment);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return counted(size, alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace hopscotch::apps {
+
+std::size_t allocation_count() {
+  return g_count;
+}
+
+}  // namespace hopscotch::apps
