@@ -32,7 +32,7 @@ packages:
 	@scripts/install_packages build run test
 
 build: packages
-	@TARGETS=hopscotch scripts/build release $(CMAKE_ARGS)
+	@TARGETS="hopscotch web_page" scripts/build release $(CMAKE_ARGS)
 
 run: build
 	$(PROGRAM) run $(SCENARIO) $(ARGS)

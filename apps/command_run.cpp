@@ -20,6 +20,7 @@
 #include "apps/text_file.hpp"
 #include "apps/video.hpp"
 #include "apps/view.hpp"
+#include "apps/web_run.hpp"
 
 namespace hopscotch::apps {
 
@@ -39,6 +40,8 @@ struct RunOptions {
   double pace = 0.0;
   bool video = false;
   bool view = false;
+  bool serve = false;
+  int port = kWebPort;
   bool lcm = false;
   bool no_pictures = false;
   bool json = false;
@@ -83,7 +86,7 @@ void keep_pace(double pace, core::Stamp now, const Stopwatch& watch) {
 /// Live channels are for runs that somebody watches. Without --lcm they are a convenience: a
 /// machine that cannot carry them runs without.
 std::unique_ptr<LiveRun> open_live(const RunOptions& options, CommandBox& box) {
-  if (!options.lcm && options.pace <= 0.0 && !options.view) return nullptr;
+  if (!options.lcm && options.pace <= 0.0 && !options.view && !options.serve) return nullptr;
   try {
     return std::make_unique<LiveRun>(live_url(), box);
   } catch (const msgs::LiveUnavailable& error) {
@@ -100,6 +103,52 @@ RunRecorder::Listener to_network(LiveRun& live) {
         event.channel == msgs::kTargetCommandChannel || event.channel == msgs::kModeCommandChannel;
     if (!command) live.publish(event);
   };
+}
+
+/// Who watches a run besides its recorder.
+struct Watchers {
+  std::unique_ptr<LiveRun> live;
+  std::unique_ptr<WebRun> page;
+  std::unique_ptr<LiveView> window;
+
+  [[nodiscard]] bool closed() const { return window && window->closed(); }
+};
+
+Watchers open_watchers(const RunOptions& options, std::uint64_t id, const RunRequest& request,
+                       CommandBox& box) {
+  Watchers watchers;
+  watchers.live = open_live(options, box);
+  if (options.serve) watchers.page = std::make_unique<WebRun>(options.port, id, request, box);
+  if (options.view) watchers.window = std::make_unique<LiveView>(request);
+  return watchers;
+}
+
+/// From the first tick to the last. @return what came of it but for identity.
+RunResult simulate(const RunOptions& options, const RunRequest& request, RunRecorder& recorder,
+                   RunAttendant& attendant, Watchers& watchers) {
+  if (watchers.live) recorder.add_listener(to_network(*watchers.live));
+  if (watchers.page) {
+    recorder.add_listener([&](const msgs::Event& event) { watchers.page->show(event); });
+  }
+  LockstepRun simulation(request);
+  const bool watched = options.view || options.serve;
+  const double pace = options.pace > 0.0 ? options.pace : (watched ? 1.0 : 0.0);
+  const Stopwatch watch;
+  const auto observe = [&](const TickRecord& tick) {
+    recorder.record(tick);
+    attendant.note(tick.events);
+    if (watchers.window) watchers.window->show(tick.truth.state);
+  };
+  while (simulation.step(observe)) {
+    keep_pace(pace, simulation.now(), watch);
+    if (interrupted || watchers.closed()) simulation.stop();
+    attendant.attend(simulation);
+    if (watchers.page) watchers.page->attend(simulation);
+  }
+  attendant.close(simulation.now());
+  RunResult result = simulation.result();
+  result.timing.real_time_factor = 1e3 * result.duration / watch.milliseconds();
+  return result;
 }
 
 void say_jump(const JumpResult& jump, std::FILE* people) {
@@ -133,8 +182,6 @@ ExitStatus run(const RunOptions& options) {
       options.out.empty()
           ? fs::path("runs") / (prepared.request.scenario.name + "-" + std::to_string(options.seed))
           : options.out;
-  std::optional<LiveView> view;
-  if (options.view) view.emplace(prepared.request);
   std::fprintf(people, "%s, seed %llu: perception %s, state %s\n",
                prepared.request.scenario.name.c_str(),
                static_cast<unsigned long long>(options.seed), options.perception.c_str(),
@@ -142,27 +189,15 @@ ExitStatus run(const RunOptions& options) {
 
   RunRecorder recorder(out, id, prepared.request, prepared.sources);
   RunAttendant attendant(id, recorder);
-  const std::unique_ptr<LiveRun> live = open_live(options, attendant.box());
-  if (live) recorder.add_listener(to_network(*live));
-  LockstepRun simulation(prepared.request);
-  std::signal(SIGINT, on_interrupt);
-  const double pace = options.pace > 0.0 ? options.pace : (options.view ? 1.0 : 0.0);
-  const Stopwatch watch;
-  const auto observe = [&](const TickRecord& tick) {
-    recorder.record(tick);
-    attendant.note(tick.events);
-    if (view) view->show(tick.truth.state);
-  };
-  while (simulation.step(observe)) {
-    keep_pace(pace, simulation.now(), watch);
-    if (interrupted || (view && view->closed())) simulation.stop();
-    attendant.attend(simulation);
+  Watchers watchers = open_watchers(options, id, prepared.request, attendant.box());
+  if (watchers.page) {
+    std::fprintf(people, "page: %s\n", watchers.page->url().c_str());
+    std::fflush(people);
   }
-  attendant.close(simulation.now());
-  RunResult result = simulation.result();
+  std::signal(SIGINT, on_interrupt);
+  RunResult result = simulate(options, prepared.request, recorder, attendant, watchers);
   result.run_id = run_id_text(id);
   result.program = std::string(program_version());
-  result.timing.real_time_factor = 1e3 * result.duration / watch.milliseconds();
   const RunFolder folder = recorder.finish(result);
   if (!options.no_pictures) {
     if (const auto missing = draw_key_frames(folder)) {
@@ -172,6 +207,7 @@ ExitStatus run(const RunOptions& options) {
   write_report(folder.path);
   if (options.video) write_video(folder);
   say_result(result, folder, people);
+  if (watchers.page) watchers.page->finish(read_file(folder.result()));
   if (options.json) std::printf("%s", read_file(folder.result()).c_str());
   return exit_status(result.outcome);
 }
@@ -205,8 +241,13 @@ void add_run_command(CLI::App& app, Action& action) {
   command->add_flag("--video", options->video, "Write video.mp4");
   command->add_flag("--no-pictures", options->no_pictures, "Report without key frames: faster");
   command->add_flag("--view", options->view, "Show it in a window, in real time");
+  command->add_flag("--serve", options->serve,
+                    "Show it in a browser on this machine, in real time");
+  command->add_option("--port", options->port, "Of the page; 0: any that is free")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
   command->add_flag("--lcm", options->lcm,
-                    "Live LCM channels and commands; --pace and --view have them too");
+                    "Live LCM channels and commands; --pace, --view and --serve have them too");
   command->add_flag("--json", options->json, "Print result.json on standard output");
   command->callback([&action, options] { action = [options] { return run(*options); }; });
 }

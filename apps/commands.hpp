@@ -24,7 +24,10 @@ void add_command_command(CLI::App& app, Action& action);
 void add_report_command(CLI::App& app, Action& action);
 void add_robot_command(CLI::App& app, Action& action);
 void add_motors_command(CLI::App& app, Action& action);
+void add_explain_command(CLI::App& app, Action& action);
+void add_view_command(CLI::App& app, Action& action);
 void add_doctor_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);
+void add_manual_command(CLI::App& app, Action& action);
 
 }  // namespace hopscotch::apps

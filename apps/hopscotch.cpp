@@ -24,8 +24,11 @@ int main(int argc, char** argv) {
   hopscotch::apps::add_report_command(app, action);
   hopscotch::apps::add_robot_command(app, action);
   hopscotch::apps::add_motors_command(app, action);
+  hopscotch::apps::add_explain_command(app, action);
+  hopscotch::apps::add_view_command(app, action);
   hopscotch::apps::add_doctor_command(app, action);
   hopscotch::apps::add_bench_command(app, action);
+  hopscotch::apps::add_manual_command(app, action);
   try {
     app.parse(argc, argv);
     return static_cast<int>(action());

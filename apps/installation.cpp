@@ -13,14 +13,26 @@ std::string_view program_version() {
   return HOPSCOTCH_VERSION;
 }
 
-fs::path config_directory() {
+namespace {
+
+/// `share/hopscotch/<name>` beside an installed program, else `otherwise`.
+fs::path shared_directory(const std::string& name, const fs::path& otherwise) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
-    const fs::path installed = program.parent_path().parent_path() / "share/hopscotch/config";
+    const fs::path installed = program.parent_path().parent_path() / "share/hopscotch" / name;
     if (fs::is_directory(installed, error)) return installed;
   }
-  return HOPSCOTCH_SOURCE_CONFIG_DIR;
+  return otherwise;
+}
+
+}  // namespace
+
+fs::path config_directory() {
+  return shared_directory("config", HOPSCOTCH_SOURCE_CONFIG_DIR);
+}
+fs::path page_directory() {
+  return shared_directory("web", HOPSCOTCH_BUILT_PAGE_DIR);
 }
 
 fs::path robot_file(const std::string& name) {

@@ -13,6 +13,9 @@ namespace hopscotch::apps {
 /// source tree it was built from.
 [[nodiscard]] std::filesystem::path config_directory();
 
+/// Where the files of the web page are: beside an installed program, else where it was built.
+[[nodiscard]] std::filesystem::path page_directory();
+
 /// `<config>/robots/<name>.yaml`.
 /// @throws core::ConfigError listing the known robots if there is none of that name.
 [[nodiscard]] std::filesystem::path robot_file(const std::string& name);

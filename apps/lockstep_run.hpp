@@ -59,6 +59,10 @@ class LockstepRun {
   /// A wish of the operator; its answer is among the events of a later tick. @pre step() has run.
   void apply(const core::OperatorCommand& command) { pipeline_.apply(command); }
 
+  [[nodiscard]] std::optional<DecisionView> decision_view() const {
+    return pipeline_.decision_view();
+  }
+
   /// Ends the run where it stands, e.g. at the user's wish.
   void stop();
 

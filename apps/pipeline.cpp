@@ -139,8 +139,9 @@ bool Pipeline::may_decide(const core::RobotState& state) const {
 
 void Pipeline::choose_and_plan(const core::RobotState& state) {
   const core::RobotState rest = control_->rest_state();
-  const core::TerrainMap oracle_map = oracle_ ? oracle_(state) : core::TerrainMap{};
-  const core::TerrainMap& map = oracle_ ? oracle_map : mapper_.map();
+  if (oracle_) oracle_map_ = oracle_(state);
+  const core::TerrainMap& map = oracle_ ? oracle_map_ : mapper_.map();
+  events_.map = &map;
   const perception::OneStepConfig& one_step = config_.perception.one_step;
   const perception::StancePose stance = perception::stance_pose(one_step, robot_, rest);
   events_.terrain = perception::one_step_terrain(one_step, map, stance);

@@ -39,6 +39,7 @@ enum class MissionEnd : std::uint8_t { reached, refused, fault, stopped };
 
 /// What the stages produced in one tick, for logs; empty where nothing was due.
 struct PipelineEvents {
+  const core::TerrainMap* map = nullptr;  ///< That was decided on; valid until the next tick.
   std::optional<core::OneStepTerrain> terrain;
   std::optional<core::TargetChoice> choice;
   std::optional<core::Result<core::JumpPlan>> plan;
@@ -49,6 +50,13 @@ struct PipelineEvents {
   std::optional<double> estimator_ms;
   double tick_ms = 0.0;
   std::size_t allocations = 0;  ///< By estimator and control tick: none is right.
+};
+
+/// What a decision about the next jump is made from.
+struct DecisionView {
+  core::TerrainMap map;
+  core::OneStepTerrain terrain;  ///< Along the jump line of `rest`.
+  core::RobotState rest;         ///< How the robot will stand.
 };
 
 /// The whole robot brain, stage after stage, in lock-step: a stage runs when its input is there,
@@ -72,6 +80,9 @@ class Pipeline {
   /// next one, or for a landing target once it has been planned. @pre tick() has run.
   void apply(const core::OperatorCommand& command);
   [[nodiscard]] bool held() const { return desk_.mode() != OperatorDesk::Mode::free; }
+
+  /// What a decision could be made from now; nothing while the robot is in the air or limp.
+  [[nodiscard]] std::optional<DecisionView> decision_view() const;
 
   /// Set once the robot stands and will not jump again.
   [[nodiscard]] std::optional<MissionEnd> end() const { return end_; }
@@ -109,6 +120,7 @@ class Pipeline {
   model::RobotParameters robot_;
   Mission mission_;
   TerrainOracle oracle_;
+  core::TerrainMap oracle_map_;  ///< Its last answer.
 
   control::StateEstimator estimator_;
   core::RobotState state_;

@@ -3,6 +3,7 @@
 
 #include "apps/pipeline.hpp"
 #include "core/check.hpp"
+#include "perception/one_step.hpp"
 
 namespace hopscotch::apps {
 
@@ -28,6 +29,19 @@ void Pipeline::apply(const core::OperatorCommand& command) {
   } else {
     apply_target(command);
   }
+}
+
+std::optional<DecisionView> Pipeline::decision_view() const {
+  if (!control_) return std::nullopt;
+  const RobotPhase phase = control_->phase();
+  if (!core::is_standing(phase) && phase != RobotPhase::landing) return std::nullopt;
+  DecisionView view;
+  view.rest = control_->rest_state();
+  view.map = oracle_ ? oracle_(view.rest) : mapper_.map();
+  const perception::OneStepConfig& one_step = config_.perception.one_step;
+  view.terrain = perception::one_step_terrain(one_step, view.map,
+                                              perception::stance_pose(one_step, robot_, view.rest));
+  return view;
 }
 
 /// What is still being planned makes way for a newer wish; a plan that was handed over is flown.

@@ -1,5 +1,6 @@
 #include "apps/run_recorder.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <sstream>
 #include <stdexcept>
@@ -7,6 +8,7 @@
 
 #include "apps/installation.hpp"
 #include "apps/live_run.hpp"
+#include "apps/map_view.hpp"
 #include "apps/text_file.hpp"
 #include "core/config_reader.hpp"
 #include "sim/scene_builder.hpp"
@@ -107,6 +109,7 @@ void RunRecorder::add_listener(Listener listener) {
 
 void RunRecorder::put(const msgs::Event& event) {
   for (const Listener& listener : listeners_) listener(event);
+  black_box_.remember(event);
   if (log_broken_) return;
   try {
     log_.write(event);
@@ -133,13 +136,34 @@ void RunRecorder::record(core::Stamp now, const core::OperatorAnswer& answer) {
   put(now, ack_of(now, answer));
 }
 
+/// A robot that finds no target decides anew every tick: the same refusal is not written a thousand
+/// times a second.
+void RunRecorder::record_decision(core::Stamp now, const PipelineEvents& events) {
+  constexpr double kMapPeriod = 0.25;      // [s]
+  constexpr double kRefusalPeriod = 0.05;  // [s]
+  if (events.map != nullptr && events.terrain && now >= next_map_) {
+    constexpr double kAhead = 0.45;  // middle of what a jump can reach [m]
+    const double heading = events.terrain->heading;
+    put(now, map_view(*events.map, events.terrain->p_WS.x() + kAhead * std::cos(heading),
+                      events.terrain->p_WS.y() + kAhead * std::sin(heading)));
+    next_map_ = now.after(kMapPeriod);
+  }
+  const core::Reason refused = events.choice ? events.choice->refusal.reason : core::Reason::none;
+  const bool repeated = refused != core::Reason::none && refused == refused_ && now < next_refusal_;
+  if (!repeated) {
+    if (events.terrain) put(now, *events.terrain);
+    if (events.choice) put(now, *events.choice);
+    if (events.choice) next_refusal_ = now.after(kRefusalPeriod);
+  }
+  if (events.choice) refused_ = refused;
+  if (events.plan && events.plan->has_value()) put(now, **events.plan);
+}
+
 void RunRecorder::record(const TickRecord& tick) {
   const core::Stamp now = tick.truth.state.stamp;
   const PipelineEvents& events = tick.events;
   put(now, tick.readings);
-  if (events.terrain) put(now, *events.terrain);
-  if (events.choice) put(now, *events.choice);
-  if (events.plan && events.plan->has_value()) put(now, **events.plan);
+  record_decision(now, events);
   for (const core::OperatorAnswer& answer : events.answers) record(now, answer);
   if (events.perception_ms) times_.perception_ms = *events.perception_ms;
   if (events.planning_ms) times_.plan_ms = *events.planning_ms;
@@ -163,9 +187,27 @@ void RunRecorder::close_log() {
   }
 }
 
+/// A run folder of its own, so that `explain`, `report` and `view` take it.
+void RunRecorder::write_black_box(const RunResult& result) const {
+  const bool wrong = result.outcome == RunOutcome::fell || result.outcome == RunOutcome::fault;
+  if (!wrong) return;
+  const RunFolder box{partial_.black_box()};
+  try {
+    fs::create_directories(box.path);
+    black_box_.write(box.log());
+    for (const auto file : {&RunFolder::config, &RunFolder::robot, &RunFolder::scene}) {
+      fs::copy_file((partial_.*file)(), (box.*file)());
+    }
+    write_run_result(box.result(), result);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "hopscotch: no black box: %s\n", error.what());
+  }
+}
+
 RunFolder RunRecorder::finish(const RunResult& result) {
   close_log();
   write_run_result(partial_.result(), result);
+  write_black_box(result);
   fs::remove_all(folder_);
   fs::rename(partial_.path, folder_);
   finished_ = true;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/black_box.hpp"
 #include "apps/lockstep_run.hpp"
 #include "apps/run_folder.hpp"
 #include "apps/run_result.hpp"
@@ -45,11 +46,14 @@ class RunRecorder {
   void record(core::Stamp now, const core::OperatorCommand& command);
   void record(core::Stamp now, const core::OperatorAnswer& answer);
 
-  /// Writes the result and gives the folder its name. @return the finished folder.
+  /// Writes the result and gives the folder its name; after a fall or fault with the last seconds
+  /// of all channels in a folder `black-box` of its own. @return the finished folder.
   RunFolder finish(const RunResult& result);
 
  private:
   void write_sources(const RunRequest& request, const RunSources& sources) const;
+  void write_black_box(const RunResult& result) const;
+  void record_decision(core::Stamp now, const PipelineEvents& events);
   void put(const msgs::Event& event);
   void close_log();
   template <typename Value>
@@ -62,10 +66,14 @@ class RunRecorder {
   msgs::EventMaker maker_;
   msgs::RunLogWriter log_;
   bool log_broken_ = false;
+  BlackBox black_box_;
   msgs::Event scene_;
   std::vector<Listener> listeners_;
   msgs::StageTimes times_;  ///< Since the last status.
   std::int64_t ticks_ = 0;
+  core::Stamp next_map_;      ///< No map is recorded before.
+  core::Stamp next_refusal_;  ///< The same refusal is not repeated before.
+  core::Reason refused_ = core::Reason::none;
   bool finished_ = false;
 };
 

@@ -11,6 +11,7 @@ inline constexpr std::string_view kDefaultUrl =
 inline constexpr std::string_view kSensorsChannel = "HOP_SENSORS";
 inline constexpr std::string_view kStateChannel = "HOP_STATE";
 inline constexpr std::string_view kTerrainChannel = "HOP_TERRAIN";
+inline constexpr std::string_view kMapChannel = "HOP_MAP";
 inline constexpr std::string_view kTargetChannel = "HOP_TARGET";
 inline constexpr std::string_view kTargetCommandChannel = "HOP_TARGET_CMD";
 inline constexpr std::string_view kModeCommandChannel = "HOP_COMMAND_CMD";

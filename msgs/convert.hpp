@@ -34,6 +34,7 @@ struct Tagged {
 /// The entries of the certificate stay behind: they belong to the solver, not to the motion.
 [[nodiscard]] Bytes encode(const core::JumpPlan& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const core::OneStepTerrain& value, const Tag& tag);
+[[nodiscard]] Bytes encode(const MapView& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const core::TargetChoice& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const TargetCommand& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const ModeCommand& value, const Tag& tag);
@@ -57,6 +58,8 @@ template <>
 std::optional<Tagged<core::JumpPlan>> decode(std::span<const std::uint8_t> bytes);
 template <>
 std::optional<Tagged<core::OneStepTerrain>> decode(std::span<const std::uint8_t> bytes);
+template <>
+std::optional<Tagged<MapView>> decode(std::span<const std::uint8_t> bytes);
 template <>
 std::optional<Tagged<core::TargetChoice>> decode(std::span<const std::uint8_t> bytes);
 template <>

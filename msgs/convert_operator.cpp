@@ -70,10 +70,10 @@ std::optional<Tagged<Ack>> decode(std::span<const std::uint8_t> bytes) {
   if (!message) return std::nullopt;
   Ack value;
   value.stamp = wire::stamp_of(*message);
-  value.channel = message->channel;
+  value.channel = wire::text_of(message->channel);
   value.command_sequence = static_cast<std::uint64_t>(message->command_sequence);
   value.accepted = message->accepted != 0;
-  value.refusal.sentence = message->sentence;
+  value.refusal.sentence = wire::text_of(message->sentence);
   value.start_in = message->start_in;
   if (!wire::get_enum(message->reason, core::Reason::internal_error, value.refusal.reason)) {
     return std::nullopt;

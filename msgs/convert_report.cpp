@@ -92,7 +92,7 @@ std::optional<Tagged<Scene>> decode(std::span<const std::uint8_t> bytes) {
   if (!message) return std::nullopt;
   Scene value;
   value.stamp = wire::stamp_of(*message);
-  value.robot = message->robot;
+  value.robot = wire::text_of(message->robot);
   value.goal_x = message->goal_x;
   value.pit_z = message->pit_z;
   if (!wire::get_count(message->slab_count, value.slabs.size(), value.slab_count)) {

@@ -184,7 +184,7 @@ std::optional<Tagged<core::TargetChoice>> decode(std::span<const std::uint8_t> b
   core::LandingTarget target;
   if (!wire::get(message->target, target)) return std::nullopt;
   if (message->has_target != 0) value.target = target;
-  value.refusal.sentence = message->refusal_sentence;
+  value.refusal.sentence = wire::text_of(message->refusal_sentence);
   if (!wire::get_enum(message->refusal_reason, core::Reason::internal_error,
                       value.refusal.reason) ||
       !get_candidates(*message, value)) {

@@ -12,6 +12,7 @@ Dispatcher::Dispatcher(RunLogHandlers handlers) : handlers_(std::move(handlers))
   on(kCommandChannel, handlers_.command);
   on(kPlanChannel, handlers_.plan);
   on(kTerrainChannel, handlers_.terrain);
+  on(kMapChannel, handlers_.map);
   on(kTargetChannel, handlers_.target);
   on(kTargetCommandChannel, handlers_.target_command);
   on(kModeCommandChannel, handlers_.mode_command);

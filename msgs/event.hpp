@@ -25,6 +25,9 @@ constexpr std::string_view channel_of(const core::JumpPlan&) {
 constexpr std::string_view channel_of(const core::OneStepTerrain&) {
   return kTerrainChannel;
 }
+constexpr std::string_view channel_of(const MapView&) {
+  return kMapChannel;
+}
 constexpr std::string_view channel_of(const core::TargetChoice&) {
   return kTargetChannel;
 }

@@ -13,6 +13,7 @@
 #include "core/reason.hpp"
 #include "core/robot_layout.hpp"
 #include "core/robot_state.hpp"
+#include "core/terrain_map.hpp"
 #include "core/time.hpp"
 
 /// What travels on the channels besides the values of `core`.
@@ -72,6 +73,21 @@ struct Truth {
   core::RobotState state;
   core::ContactWrenches ground{};  ///< Of the ground on each foot, at the sole centre, in W.
   core::JointVector tau = core::JointVector::Constant(core::kNaN);  ///< Applied, joint side [N·m].
+};
+
+/// HOP_MAP: the part of the height map around a decision, for people: heights are rounded to a
+/// millimetre.
+struct MapView {
+  static constexpr int kMaxSide = 96;  ///< [cells]
+  static constexpr std::size_t kMaxCells = kMaxSide * kMaxSide;
+  core::Stamp stamp;                                ///< Of the newest frame in it.
+  double origin_x = 0.0;                            ///< Lower corner, in W [m].
+  double origin_y = 0.0;                            ///< [m]
+  double resolution = 0.0;                          ///< Edge of a cell [m].
+  int size_x = 0;                                   ///< [cells]
+  int size_y = 0;                                   ///< [cells]
+  std::array<std::int16_t, kMaxCells> height_mm{};  ///< [iy * size_x + ix]; 0 where not observed.
+  std::array<core::CellState, kMaxCells> state{};
 };
 
 /// One thing to stand on, as drawn.

@@ -61,6 +61,9 @@ void RunLogWriter::write(core::Stamp now, const core::JumpPlan& value) {
 void RunLogWriter::write(core::Stamp now, const core::OneStepTerrain& value) {
   file_->append(file_->maker.make(now, value));
 }
+void RunLogWriter::write(core::Stamp now, const MapView& value) {
+  file_->append(file_->maker.make(now, value));
+}
 void RunLogWriter::write(core::Stamp now, const core::TargetChoice& value) {
   file_->append(file_->maker.make(now, value));
 }

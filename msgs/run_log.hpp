@@ -33,6 +33,7 @@ class RunLogWriter {
   void write(core::Stamp now, const core::JointCommand& value);
   void write(core::Stamp now, const core::JumpPlan& value);
   void write(core::Stamp now, const core::OneStepTerrain& value);
+  void write(core::Stamp now, const MapView& value);
   void write(core::Stamp now, const core::TargetChoice& value);
   void write(core::Stamp now, const TargetCommand& value);
   void write(core::Stamp now, const ModeCommand& value);
@@ -68,6 +69,7 @@ struct RunLogHandlers {
   Handler<Status> status;
   Handler<Truth> truth;
   Handler<Scene> scene;
+  Handler<MapView> map;
 };
 
 /// What was found in a log.

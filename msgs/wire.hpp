@@ -7,6 +7,7 @@
 #include <exception>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "core/check.hpp"
 #include "core/contact_wrenches.hpp"
@@ -108,6 +109,11 @@ template <typename Enum>
 template <typename Enum>
 std::uint8_t number_of(Enum value) {
   return static_cast<std::uint8_t>(value);
+}
+
+/// Text from the wire up to its first NUL: generated code cannot encode one with more behind it.
+inline std::string text_of(const std::string& text) {
+  return text.substr(0, text.find('\0'));
 }
 
 /// A count from the wire. @return false if negative or above `capacity`.

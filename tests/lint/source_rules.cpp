@@ -22,7 +22,7 @@ struct LibraryHome {
   std::string_view library;
   std::array<std::string_view, 3> places;
 };
-constexpr std::array<LibraryHome, 19> kHomes{{
+constexpr std::array<LibraryHome, 20> kHomes{{
     {"pcl/", "PCL", {"perception/"}},
     {"octomap/", "OctoMap", {"perception/"}},
     {"ceres/", "Ceres", {"perception/"}},
@@ -40,6 +40,7 @@ constexpr std::array<LibraryHome, 19> kHomes{{
     {"sqlite3", "SQLite", {"apps/"}},
     {"nlohmann/", "nlohmann-json", {"apps/"}},
     {"CLI/", "CLI11", {"apps/"}},
+    {"httplib.h", "cpp-httplib", {"apps/"}},
     {"gtest/", "GoogleTest", {}},
     {"gmock/", "GoogleTest", {}},
 }};

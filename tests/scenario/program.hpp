@@ -15,8 +15,8 @@ struct Answer {
 };
 
 /// @param arguments Of the program, as for a shell.
-inline Answer call(const std::string& arguments) {
-  const std::string line = std::string(HOPSCOTCH_PROGRAM) + " " + arguments + " 2>&1";
+inline Answer call_program(const std::string& program, const std::string& arguments) {
+  const std::string line = program + " " + arguments + " 2>&1";
   std::FILE* pipe = popen(line.c_str(), "r");
   if (pipe == nullptr) return {};
   Answer answer;
@@ -27,6 +27,11 @@ inline Answer call(const std::string& arguments) {
   const int status = pclose(pipe);
   answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return answer;
+}
+
+/// The same for our own program.
+inline Answer call(const std::string& arguments) {
+  return call_program(HOPSCOTCH_PROGRAM, arguments);
 }
 
 }  // namespace hopscotch::apps

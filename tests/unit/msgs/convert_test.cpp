@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
+#include <string_view>
 
 #include "tests/unit/msgs/samples.hpp"
 
@@ -207,6 +209,47 @@ TEST(Convert, OperatorMessagesSurviveTheWire) {
   EXPECT_FALSE(ack.accepted);
   EXPECT_EQ(ack.refusal.text(), "out_of_reach: 0.90 m is too far");
   EXPECT_EQ(ack.start_in, 0.25);
+}
+
+TEST(Convert, TextWithANulInsideCanBeSentOn) {
+  const Bytes bytes =
+      encode(Ack{{7}, "HOP_TARGET_CMD", 12, false, {core::Reason::not_now, "why"}}, {});
+  Bytes hostile = bytes;
+  const std::string_view word = "TARGET";
+  const auto at = std::search(hostile.begin(), hostile.end(), word.begin(), word.end());
+  ASSERT_NE(at, hostile.end());
+  *at = 0;
+  const auto message = decode<Ack>(hostile);
+  ASSERT_TRUE(message.has_value());
+  EXPECT_EQ(message->value.channel, "HOP_");
+  EXPECT_TRUE(decode<Ack>(encode(message->value, message->tag)).has_value());
+}
+
+TEST(Convert, MapViewSurvivesTheWireAndItsSizesAreChecked) {
+  MapView sent;
+  sent.stamp = {8};
+  sent.origin_x = -0.3;
+  sent.origin_y = 0.7;
+  sent.resolution = 0.015;
+  sent.size_x = 3;
+  sent.size_y = 2;
+  sent.height_mm = {1, -2, 3, 4, 5, -600};
+  sent.state[4] = core::CellState::observed;
+  const MapView got = round_trip(sent);
+  EXPECT_EQ(got.stamp, sent.stamp);
+  EXPECT_EQ(got.origin_x, sent.origin_x);
+  EXPECT_EQ(got.origin_y, sent.origin_y);
+  EXPECT_EQ(got.resolution, sent.resolution);
+  EXPECT_EQ(got.size_x, 3);
+  EXPECT_EQ(got.size_y, 2);
+  EXPECT_EQ(got.height_mm, sent.height_mm);
+  EXPECT_EQ(got.state, sent.state);
+
+  for (const int size : {-1, MapView::kMaxSide + 1, 1 << 30}) {
+    MapView bad = sent;
+    bad.size_y = size;
+    EXPECT_FALSE(decode<MapView>(encode(bad, {1, 1}))) << size;
+  }
 }
 
 TEST(Convert, StatusSurvivesTheWire) {

@@ -68,6 +68,7 @@ TEST_F(RunLog, EveryTypeHasItsOwnChannel) {
   writer.write({}, samples::plan());
   writer.write({}, samples::terrain());
   writer.write({}, samples::choice());
+  writer.write({}, MapView{});
   writer.write({}, TargetCommand{});
   writer.write({}, ModeCommand{});
   writer.write({}, Ack{});
@@ -78,11 +79,11 @@ TEST_F(RunLog, EveryTypeHasItsOwnChannel) {
 
   int handed_over = 0;
   const auto count = [&](core::Stamp, const auto&) { ++handed_over; };
-  const RunLogHandlers handlers{count, count, count, count, count, count,
+  const RunLogHandlers handlers{count, count, count, count, count, count, count,
                                 count, count, count, count, count, count};
   const RunLogSummary summary = read_run_log(file(), handlers);
-  EXPECT_EQ(handed_over, 12);
-  EXPECT_EQ(summary.events, 12U);
+  EXPECT_EQ(handed_over, 13);
+  EXPECT_EQ(summary.events, 13U);
   EXPECT_EQ(summary.malformed + summary.unknown, 0U);
 }
 
