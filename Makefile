@@ -74,6 +74,7 @@ check-deep: packages
 	@TARGETS="$(FUZZERS)" scripts/build fuzz
 	@for fuzzer in $(FUZZERS); do scripts/fuzz $$fuzzer $(FUZZ_SECONDS) || exit 1; done
 	@scripts/build release $(CMAKE_ARGS)
+	ctest --preset release --build-config Deep --label-regex socketcan
 	@scripts/tidy
 
 clean:

@@ -24,7 +24,11 @@ using core::Reason;
 class OperatorOfARun : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { use_own_network(); }
-  OperatorOfARun() : folder_(fs::path(testing::TempDir()) / "hopscotch-operator") {
+  // A folder for each test: ctest runs them side by side.
+  OperatorOfARun()
+      : folder_(fs::path(testing::TempDir()) /
+                (std::string("hopscotch-operator-") +
+                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     std::ofstream(folder_ / "plain.yaml") << "name: plain\n"

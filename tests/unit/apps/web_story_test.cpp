@@ -23,7 +23,10 @@ model::RobotParameters hector() {
 
 class WebStoryOfARun : public ::testing::Test {
  protected:
-  WebStoryOfARun() : file_(fs::path(testing::TempDir()) / "web_story.lcm") {
+  WebStoryOfARun()
+      : file_(fs::path(testing::TempDir()) /
+              (std::string("web_story-") +
+               testing::UnitTest::GetInstance()->current_test_info()->name() + ".lcm")) {
     fake::write_log(file_);
     msgs::read_run_log(file_, story_.handlers());
   }
