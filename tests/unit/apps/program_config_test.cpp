@@ -21,7 +21,10 @@ std::vector<std::string> lines_of_shipped_file() {
 }
 
 std::string load_error(const std::vector<std::string>& lines) {
-  const std::string path = ::testing::TempDir() + "/hopscotch-config-test.yaml";
+  // A file for each test: ctest runs them side by side.
+  const std::string path = ::testing::TempDir() + "/config-" +
+                           ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+                           ".yaml";
   std::ofstream file(path);
   for (const std::string& line : lines) file << line << "\n";
   file.close();
