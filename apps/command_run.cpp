@@ -13,6 +13,7 @@
 #include "apps/key_frames.hpp"
 #include "apps/live_run.hpp"
 #include "apps/lockstep_run.hpp"
+#include "apps/pacer.hpp"
 #include "apps/report.hpp"
 #include "apps/run_attendant.hpp"
 #include "apps/run_recorder.hpp"
@@ -38,6 +39,7 @@ struct RunOptions {
   std::string state = "estimate";
   std::string ablation = "none";
   double pace = 0.0;
+  bool threads = false;
   bool video = false;
   bool view = false;
   bool serve = false;
@@ -65,6 +67,7 @@ Prepared prepare(const RunOptions& options) {
   request.config = ProgramConfig::load(options.config);
   request.robot = model::RobotParameters::load(robot_file(request.scenario.robot));
   request.plant_robot = model::RobotParameters::load(robot_file(request.scenario.plant.robot));
+  request.threading = options.threads ? Threading::threads : Threading::lockstep;
   request.seed = options.seed;
   request.jumps_max = options.jumps;
   request.state = options.state == "truth" ? StateSource::truth : StateSource::estimate;
@@ -75,18 +78,11 @@ Prepared prepare(const RunOptions& options) {
   return prepared;
 }
 
-/// Waits until simulated time is due on the wall clock.
-void keep_pace(double pace, core::Stamp now, const Stopwatch& watch) {
-  if (pace <= 0.0) return;
-  const double ahead_ms = 1e3 * now.seconds() / pace - watch.milliseconds();
-  if (ahead_ms > 1.0)
-    std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ahead_ms));
-}
-
 /// Live channels are for runs that somebody watches. Without --lcm they are a convenience: a
 /// machine that cannot carry them runs without.
 std::unique_ptr<LiveRun> open_live(const RunOptions& options, CommandBox& box) {
-  if (!options.lcm && options.pace <= 0.0 && !options.view && !options.serve) return nullptr;
+  const bool paced = options.pace > 0.0 || options.view || options.serve || options.threads;
+  if (!options.lcm && !paced) return nullptr;
   try {
     return std::make_unique<LiveRun>(live_url(), box);
   } catch (const msgs::LiveUnavailable& error) {
@@ -131,23 +127,25 @@ RunResult simulate(const RunOptions& options, const RunRequest& request, RunReco
     recorder.add_listener([&](const msgs::Event& event) { watchers.page->show(event); });
   }
   LockstepRun simulation(request);
-  const bool watched = options.view || options.serve;
+  const bool watched = options.view || options.serve || options.threads;
   const double pace = options.pace > 0.0 ? options.pace : (watched ? 1.0 : 0.0);
-  const Stopwatch watch;
+  Pacer pacer = options.threads ? Pacer(pace, request.config.threads.control) : Pacer(pace);
   const auto observe = [&](const TickRecord& tick) {
     recorder.record(tick);
     attendant.note(tick.events);
     if (watchers.window) watchers.window->show(tick.truth.state);
   };
   while (simulation.step(observe)) {
-    keep_pace(pace, simulation.now(), watch);
+    pacer.wait(simulation.now());
     if (interrupted || watchers.closed()) simulation.stop();
     attendant.attend(simulation);
     if (watchers.page) watchers.page->attend(simulation);
   }
   attendant.close(simulation.now());
   RunResult result = simulation.result();
-  result.timing.real_time_factor = 1e3 * result.duration / watch.milliseconds();
+  result.timing.real_time_factor = 1e3 * result.duration / pacer.elapsed_ms();
+  result.timing.deadline_misses =
+      static_cast<int>(pacer.missed() + simulation.pipeline().late_results());
   return result;
 }
 
@@ -238,6 +236,9 @@ void add_run_command(CLI::App& app, Action& action) {
   command->add_option("--config", options->config, "Tuning")->capture_default_str();
   command->add_option("--pace", options->pace, "Times real time; without it as fast as it goes")
       ->check(CLI::Range(0.01, 100.0));
+  command->add_flag(
+      "--threads", options->threads,
+      "Stages on threads of their own, paced by the clock: repeats no more to the bit");
   command->add_flag("--video", options->video, "Write video.mp4");
   command->add_flag("--no-pictures", options->no_pictures, "Report without key frames: faster");
   command->add_flag("--view", options->view, "Show it in a window, in real time");

@@ -82,12 +82,33 @@ Reason fall_reason(RobotPhase phase) {
 
 }  // namespace
 
+DrawnElsewhere::DrawnElsewhere(sim::SimCamera& camera)
+    : camera_(camera),
+      drawing_({.name = "camera", .latency = 0.0, .threaded = true, .thread = {}},
+               [this](const sim::SimCamera::Exposure& exposure, core::DepthFrame& frame) {
+                 frame = camera_.draw(exposure);
+               }) {}
+
+std::optional<core::DepthFrame> DrawnElsewhere::poll(core::Stamp now) {
+  std::optional<core::DepthFrame> arrived;
+  static_cast<void>(drawing_.made());
+  if (core::DepthFrame* const frame = drawing_.take(now)) arrived = std::move(*frame);
+  if (!drawing_.vacant()) return arrived;
+  if (const std::optional<sim::SimCamera::Exposure> exposure = camera_.due(now)) {
+    drawing_.question() = *exposure;
+    drawing_.ask(now);
+  }
+  return arrived;
+}
+
 LockstepRun::LockstepRun(const RunRequest& request)
     : request_(request),
       plant_(plant_options(request)),
       camera_(request.scenario.camera, request.plant_robot, request.scenario.seen, request.seed),
-      pipeline_(config_of(request), request.robot, mission_of(request), oracle()),
+      pipeline_(config_of(request), request.robot, mission_of(request), oracle(),
+                request.threading),
       scorer_(request.plant_robot, request.scenario.true_terrain()) {
+  if (request.threading == Threading::threads) drawn_elsewhere_.emplace(camera_);
   result_.scenario = request.scenario.name;
   result_.seed = request.seed;
   result_.perception = request.eyes == Eyes::camera ? "camera" : "truth";
@@ -116,8 +137,10 @@ bool LockstepRun::step(const std::function<void(const TickRecord&)>& observe) {
   true_state_ = truth.state;
   // Who knows the terrain looks at nothing: drawing frames would be most of the time.
   if (request_.eyes == Eyes::camera) camera_.expose(truth.state);
-  command_ = request_.state == StateSource::truth ? pipeline_.tick(truth.state, camera_)
-                                                  : pipeline_.tick(readings, camera_);
+  core::DepthSource& camera =
+      drawn_elsewhere_ ? static_cast<core::DepthSource&>(*drawn_elsewhere_) : camera_;
+  command_ = request_.state == StateSource::truth ? pipeline_.tick(truth.state, camera)
+                                                  : pipeline_.tick(readings, camera);
   plant_.notify_phase(jump_phase(pipeline_.status().phase));
   scorer_.update(truth, pipeline_.state(), pipeline_.status(), pipeline_.plan());
   collect_times();

@@ -32,6 +32,7 @@ struct RunRequest {
   Eyes eyes = Eyes::camera;
   StateSource state = StateSource::estimate;
   core::Ablation ablation = core::Ablation::none;
+  Threading threading = Threading::lockstep;
 };
 
 /// Everything that happened in one tick, for logs and views.
@@ -47,7 +48,20 @@ struct TickRecord {
   bool held = false;           ///< By the operator.
 };
 
-/// Robot brain and simulated world in lock-step, one millisecond at a time.
+/// The simulated camera with its drawing done on a thread of its own.
+class DrawnElsewhere final : public core::DepthSource {
+ public:
+  /// @param camera Outlives this object.
+  explicit DrawnElsewhere(sim::SimCamera& camera);
+  std::optional<core::DepthFrame> poll(core::Stamp now) override;
+
+ private:
+  sim::SimCamera& camera_;
+  Stage<sim::SimCamera::Exposure, core::DepthFrame> drawing_;
+};
+
+/// Robot brain and simulated world, one millisecond at a time: in lock-step, or with the brain's
+/// stages on their threads, which the caller then has to pace at real time.
 class LockstepRun {
  public:
   /// @throws core::ConfigError if the robot cannot stand as configured.
@@ -89,6 +103,7 @@ class LockstepRun {
   RunRequest request_;
   sim::MujocoPlant plant_;
   sim::SimCamera camera_;
+  std::optional<DrawnElsewhere> drawn_elsewhere_;  ///< With threads.
   Pipeline pipeline_;
   JumpScorer scorer_;
   core::JointCommand command_;

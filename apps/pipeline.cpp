@@ -16,7 +16,7 @@ namespace hopscotch::apps {
 using core::RobotPhase;
 
 Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& robot,
-                   const Mission& mission, TerrainOracle oracle)
+                   const Mission& mission, TerrainOracle oracle, Threading threading)
     : config_(config),
       robot_(robot),
       mission_(mission),
@@ -25,10 +25,37 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
       mapper_(config.perception, robot),
       selector_(config.footstep, robot),
       planner_(config.planner, robot),
-      mpc_(config.control.wrench_mpc, robot) {
+      mpc_(config.control.wrench_mpc, robot),
+      sight_({.name = "perception",
+              .latency = config.runtime.perception_latency,
+              .threaded = threading == Threading::threads,
+              .thread = config.threads.perception},
+             [this](const SightQuestion& seen, Sight& sight) {
+               sight.exposed = seen.frame.stamp;
+               sight.status = mapper_.integrate(seen.frame, seen.at_exposure);
+               sight.map = std::make_shared<const core::TerrainMap>(mapper_.map());
+             }),
+      decision_({.name = "planning",
+                 .latency = config.runtime.planning_latency,
+                 .threaded = threading == Threading::threads,
+                 .thread = config.threads.planning},
+                [this](const DecisionQuestion& question, Decision& decision) {
+                  make_decision(question, decision);
+                }),
+      balance_({.name = "MPC",
+                .latency = config.runtime.mpc_latency,
+                .threaded = threading == Threading::threads,
+                .thread = config.threads.mpc},
+               [this](const BalanceQuestion& question, control::MpcAnswer& answer) {
+                 const auto& [state, reference, form] = question.mpc;
+                 answer = {.stamp = question.now, .form = form};
+                 answer.planned = reference.knots[0].wrenches;
+                 answer.status = mpc_.solve(state, reference, form, answer.wrenches);
+               }) {
   task_.goal_x = mission.goal_x;
   task_.source = oracle_ ? core::TargetSource::truth : core::TargetSource::perception;
-  question_.reference.horizon = static_cast<std::size_t>(config.control.wrench_mpc.horizon);
+  balance_.question().mpc.reference.horizon =
+      static_cast<std::size_t>(config.control.wrench_mpc.horizon);
 }
 
 core::JointCommand Pipeline::tick(const core::SensorReadings& readings, core::DepthSource& camera) {
@@ -82,53 +109,55 @@ void Pipeline::start(const core::RobotState& state) {
   HOPSCOTCH_CHECK(pose.has_value());  // start-up refuses a posture that cannot be taken
   control_.emplace(config_.control, robot_, control::StandTarget{pose->q, pose->trunk_pitch});
   mapper_.anchor_support(state);
+  map_ = std::make_shared<const core::TerrainMap>(mapper_.map());
   landed_ = state.stamp;
   still_since_ = state.stamp;
   last_mpc_ = state.stamp.after(-config_.runtime.mpc_period);
 }
 
-/// Depth frames that have arrived go into the map once perception's latency has passed.
+/// A depth frame that has arrived goes into the map; the map counts once perception's latency has
+/// passed.
 void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
-  while (std::optional<core::DepthFrame> frame = camera.poll(now)) {
-    frames_.push(std::move(*frame), now.after(config_.runtime.perception_latency));
+  if (Sight* const sight = sight_.take(now)) {
+    map_ = std::move(sight->map);
+    const bool fused = sight->status == perception::MapStatus::fused;
+    if (fused && sight->exposed > landed_) ++frames_since_landing_;
   }
-  while (const std::optional<core::DepthFrame> frame = frames_.pop(now)) {
+  while (sight_.vacant()) {
+    std::optional<core::DepthFrame> frame = camera.poll(now);
+    if (!frame) break;
     const std::optional<core::RobotState> at_exposure = history_.at(frame->stamp);
     if (!at_exposure) continue;  // older than the history: it cannot be placed
-    const Stopwatch watch;
-    const perception::MapStatus status = mapper_.integrate(*frame, *at_exposure);
-    events_.perception_ms = watch.milliseconds();
-    if (status == perception::MapStatus::fused && frame->stamp > landed_) ++frames_since_landing_;
+    sight_.question() = {std::move(*frame), *at_exposure};
+    sight_.ask(now);
   }
+  if (sight_.made() != nullptr) events_.perception_ms = sight_.work_ms();
 }
 
 /// Where to, and how: the next jump is chosen and planned while the present one lands.
 void Pipeline::decide(const core::RobotState& state) {
-  if (std::optional<core::Result<core::JumpPlan>> plan = plans_.pop(state.stamp)) {
-    receive_plan(*plan);
-  }
-  if (may_decide(state)) choose_and_plan(state);
+  if (Decision* const decision = decision_.take(state.stamp)) receive_plan(*decision->plan);
+  if (may_decide(state)) ask_where(state);
+  if (const Decision* const decision = decision_.made()) weigh(state.stamp, *decision);
 }
 
 /// The MPC answers once its latency has passed; a touchdown or a take-off asks at once.
 void Pipeline::balance(core::Stamp now) {
-  while (const std::optional<control::MpcAnswer> answer = answers_.pop(now)) {
-    control_->answer(*answer);
-  }
+  if (const control::MpcAnswer* const answer = balance_.take(now)) control_->answer(*answer);
+  mpc_urgent_ = control_->wants_wrenches() && (mpc_urgent_ || control_->phase_changed());
   const bool due = now.since(last_mpc_) >= config_.runtime.mpc_period - 1e-9;
-  if (!control_->wants_wrenches() || !(due || control_->phase_changed())) return;
-  last_mpc_ = now;
-  control_->question(question_);
-  control::MpcAnswer answer{.stamp = now, .form = question_.form};
-  const Stopwatch watch;
-  answer.status = mpc_.solve(question_.state, question_.reference, question_.form, answer.wrenches);
-  events_.mpc_ms = watch.milliseconds();
-  answer.planned = question_.reference.knots[0].wrenches;
-  answers_.push(answer, now.after(config_.runtime.mpc_latency));
+  if (control_->wants_wrenches() && (due || mpc_urgent_) && balance_.vacant()) {
+    last_mpc_ = now;
+    mpc_urgent_ = false;
+    balance_.question().now = now;
+    control_->question(balance_.question().mpc);
+    balance_.ask(now);
+  }
+  if (balance_.made() != nullptr) events_.mpc_ms = balance_.work_ms();
 }
 
 bool Pipeline::may_decide(const core::RobotState& state) const {
-  if (end_ || control_->has_next() || !plans_.empty()) return false;
+  if (end_ || control_->has_next() || !decision_.vacant()) return false;
   if (held() && !desk_.due()) return false;
   const RobotPhase phase = control_->phase();
   if (!core::is_standing(phase) && phase != RobotPhase::landing) return false;
@@ -137,34 +166,47 @@ bool Pipeline::may_decide(const core::RobotState& state) const {
          !mission_accomplished(state);
 }
 
-void Pipeline::choose_and_plan(const core::RobotState& state) {
-  const core::RobotState rest = control_->rest_state();
-  if (oracle_) oracle_map_ = oracle_(state);
-  const core::TerrainMap& map = oracle_ ? oracle_map_ : mapper_.map();
-  events_.map = &map;
-  const perception::OneStepConfig& one_step = config_.perception.one_step;
-  const perception::StancePose stance = perception::stance_pose(one_step, robot_, rest);
-  events_.terrain = perception::one_step_terrain(one_step, map, stance);
+void Pipeline::ask_where(const core::RobotState& state) {
+  if (oracle_) map_ = std::make_shared<const core::TerrainMap>(oracle_(state));
   for_operator_ = desk_.due().has_value();
   footstep::LandingTask task = task_;
   if (for_operator_) task.target = desk_.due();
-  events_.choice = selector_.choose({map, *events_.terrain}, rest, task);
-  if (!events_.choice->target) {
-    refuse(state.stamp, events_.choice->refusal);
+  is_next_best_ = task.target.has_value() && !for_operator_;
+  decision_.question() = {map_, control_->rest_state(), task, for_operator_, ++plans_made_};
+  decision_.ask(state.stamp);
+}
+
+/// On the planning stage's thread.
+void Pipeline::make_decision(const DecisionQuestion& question, Decision& decision) {
+  const auto& [map, rest, task, for_operator, plan_id] = question;
+  const perception::OneStepConfig& one_step = config_.perception.one_step;
+  decision.map = map;
+  decision.terrain =
+      perception::one_step_terrain(one_step, *map, perception::stance_pose(one_step, robot_, rest));
+  decision.choice = selector_.choose({*map, decision.terrain}, rest, task);
+  decision.plan.reset();
+  if (!decision.choice.target) return;
+  if (!for_operator) decision.choice.target->source = task.source;  // the next best is no wish
+  decision.plan = planner_.plan({.start = rest,
+                                 .target = *decision.choice.target,
+                                 .final_posture = config_.stand_posture,
+                                 .id = plan_id});
+}
+
+void Pipeline::weigh(core::Stamp now, const Decision& decision) {
+  events_.map = decision.map;
+  events_.terrain = decision.terrain;
+  events_.choice = decision.choice;
+  if (!decision.choice.target) {
+    decision_.drop();
+    refuse(now, decision.choice.refusal);
     return;
   }
   refused_since_.reset();
-  if (!for_operator_) events_.choice->target->source = task_.source;  // the next best is no wish
-  if (!task.target) choice_ = *events_.choice;
-  choice_.target = events_.choice->target;
-  const Stopwatch watch;
-  core::Result<core::JumpPlan> plan = planner_.plan({.start = rest,
-                                                     .target = *choice_.target,
-                                                     .final_posture = config_.stand_posture,
-                                                     .id = ++plans_made_});
-  events_.planning_ms = watch.milliseconds();
-  events_.plan = plan;
-  plans_.push(std::move(plan), state.stamp.after(config_.runtime.planning_latency));
+  if (!is_next_best_ && !for_operator_) choice_ = decision.choice;
+  choice_.target = decision.choice.target;
+  events_.plan = decision.plan;
+  events_.planning_ms = decision_.work_ms();
 }
 
 void Pipeline::receive_plan(const core::Result<core::JumpPlan>& plan) {

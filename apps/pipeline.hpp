@@ -2,12 +2,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "apps/delayed.hpp"
 #include "apps/operator_desk.hpp"
 #include "apps/program_config.hpp"
+#include "apps/stage.hpp"
 #include "apps/state_history.hpp"
 #include "control/control_tick.hpp"
 #include "control/state_estimator.hpp"
@@ -39,7 +40,7 @@ enum class MissionEnd : std::uint8_t { reached, refused, fault, stopped };
 
 /// What the stages produced in one tick, for logs; empty where nothing was due.
 struct PipelineEvents {
-  const core::TerrainMap* map = nullptr;  ///< That was decided on; valid until the next tick.
+  std::shared_ptr<const core::TerrainMap> map;  ///< That was decided on.
   std::optional<core::OneStepTerrain> terrain;
   std::optional<core::TargetChoice> choice;
   std::optional<core::Result<core::JumpPlan>> plan;
@@ -59,8 +60,47 @@ struct DecisionView {
   core::RobotState rest;         ///< How the robot will stand.
 };
 
-/// The whole robot brain, stage after stage, in lock-step: a stage runs when its input is there,
-/// and its result counts from its declared latency on.
+/// Where the expensive stages run.
+enum class Threading : std::uint8_t {
+  lockstep,  ///< All on the calling thread; repeats to the bit.
+  threads,   ///< Perception, planning and MPC on threads of their own, by the clock.
+};
+
+/// A depth frame and where the robot was when it was taken.
+struct SightQuestion {
+  core::DepthFrame frame;
+  core::RobotState at_exposure;
+};
+
+struct Sight {
+  core::Stamp exposed;
+  perception::MapStatus status = perception::MapStatus::blind;
+  std::shared_ptr<const core::TerrainMap> map;  ///< With the frame in it.
+};
+
+/// From where and over what to jump next.
+struct DecisionQuestion {
+  std::shared_ptr<const core::TerrainMap> map;
+  core::RobotState rest;  ///< How the robot will stand.
+  footstep::LandingTask task;
+  bool for_operator = false;  ///< `task.target` is the operator's.
+  std::uint64_t plan_id = 0;
+};
+
+struct Decision {
+  std::shared_ptr<const core::TerrainMap> map;  ///< That was decided on.
+  core::OneStepTerrain terrain;
+  core::TargetChoice choice;
+  std::optional<core::Result<core::JumpPlan>> plan;  ///< Empty without a target.
+};
+
+struct BalanceQuestion {
+  core::Stamp now;
+  control::MpcQuestion mpc;
+};
+
+/// The whole robot brain, stage after stage: a stage runs when its input is there, and its result
+/// counts from its declared latency on.
 class Pipeline {
  public:
   /// Gives the terrain without looking, for `--perception truth`.
@@ -68,7 +108,7 @@ class Pipeline {
 
   /// @param oracle Empty: the depth camera is all there is.
   Pipeline(const ProgramConfig& config, const model::RobotParameters& robot, const Mission& mission,
-           TerrainOracle oracle);
+           TerrainOracle oracle, Threading threading);
 
   /// One exchange: sensor readings and camera in, joint commands out. Readings with an old stamp
   /// change nothing.
@@ -96,6 +136,10 @@ class Pipeline {
   /// The state that the last tick worked on.
   [[nodiscard]] const core::RobotState& state() const { return state_; }
   [[nodiscard]] const control::StateEstimator& estimator() const { return estimator_; }
+  /// Results that came later than their stage's declared latency; none in lock-step.
+  [[nodiscard]] std::uint64_t late_results() const {
+    return sight_.late() + decision_.late() + balance_.late();
+  }
 
  private:
   void run_stages(core::DepthSource& camera);
@@ -106,7 +150,9 @@ class Pipeline {
   void start(const core::RobotState& state);
   void receive_plan(const core::Result<core::JumpPlan>& plan);
   void watch_mission(const core::RobotState& state);
-  void choose_and_plan(const core::RobotState& state);
+  void ask_where(const core::RobotState& state);
+  void make_decision(const DecisionQuestion& question, Decision& decision);
+  void weigh(core::Stamp now, const Decision& decision);
   [[nodiscard]] bool may_decide(const core::RobotState& state) const;
   [[nodiscard]] bool mission_accomplished(const core::RobotState& state) const;
   void refuse(core::Stamp now, const core::Refusal& refusal);
@@ -120,7 +166,6 @@ class Pipeline {
   model::RobotParameters robot_;
   Mission mission_;
   TerrainOracle oracle_;
-  core::TerrainMap oracle_map_;  ///< Its last answer.
 
   control::StateEstimator estimator_;
   core::RobotState state_;
@@ -132,12 +177,10 @@ class Pipeline {
   control::WrenchMpc mpc_;
   std::optional<control::ControlTick> control_;  // starts with the first state
 
-  Delayed<core::DepthFrame> frames_;
-  Delayed<core::Result<core::JumpPlan>> plans_;
-  Delayed<control::MpcAnswer> answers_;
-  control::MpcQuestion question_;
+  std::shared_ptr<const core::TerrainMap> map_;  ///< The newest that counts.
 
   core::Stamp last_mpc_;
+  bool mpc_urgent_ = false;     ///< A phase began after the last question.
   bool height_checked_ = true;  ///< Since the last touchdown.
   core::Stamp landed_;          ///< Of the last touchdown, or of the start.
   core::Stamp still_since_;     ///< Standing still since then.
@@ -145,6 +188,7 @@ class Pipeline {
   footstep::LandingTask task_;
   OperatorDesk desk_;
   bool for_operator_ = false;  ///< The plan that is being made answers the operator's target.
+  bool is_next_best_ = false;  ///< It is for a place of an earlier choice.
   core::TargetChoice choice_;  ///< The target being planned, with the ranked places it was among.
   std::vector<double> failed_distances_;  ///< Of places that could not be planned from here [m].
   core::RobotPhase last_phase_ = core::RobotPhase::stand;
@@ -154,6 +198,11 @@ class Pipeline {
   std::optional<MissionEnd> end_;
   core::Refusal end_reason_;
   PipelineEvents events_;
+
+  // Last: their threads use the stages above.
+  Stage<SightQuestion, Sight> sight_;
+  Stage<DecisionQuestion, Decision> decision_;
+  Stage<BalanceQuestion, control::MpcAnswer> balance_;
 };
 
 }  // namespace hopscotch::apps

@@ -37,7 +37,7 @@ std::optional<DecisionView> Pipeline::decision_view() const {
   if (!core::is_standing(phase) && phase != RobotPhase::landing) return std::nullopt;
   DecisionView view;
   view.rest = control_->rest_state();
-  view.map = oracle_ ? oracle_(view.rest) : mapper_.map();
+  view.map = oracle_ ? oracle_(view.rest) : *map_;
   const perception::OneStepConfig& one_step = config_.perception.one_step;
   view.terrain = perception::one_step_terrain(one_step, view.map,
                                               perception::stance_pose(one_step, robot_, view.rest));
@@ -52,9 +52,9 @@ void Pipeline::apply_target(const core::OperatorCommand& command) {
       return;
     }
     desk_.take_target(command);
-    if (desk_.due()) plans_.clear();
+    if (desk_.due()) decision_.drop();
   } else if (command.clear_target) {
-    if (desk_.due()) plans_.clear();
+    if (desk_.due()) decision_.drop();
     const bool dropped = desk_.withdraw_target("cleared by the operator");
     desk_.accept(command, dropped ? "the target is dropped" : "there was no target to drop");
   } else {
@@ -79,7 +79,7 @@ void Pipeline::apply_mode(const core::OperatorCommand& command) {
       if (!control_->hold() && control_->phase() != RobotPhase::hold) {
         return desk_.refuse(command, drives_off);
       }
-      plans_.clear();
+      decision_.drop();
       const bool stop = command.mode == ModeRequest::stop;
       desk_.set_mode(stop ? Mode::stopping : Mode::held);
       desk_.accept(command, stop ? "the robot comes to a stand and the run ends"
@@ -90,7 +90,7 @@ void Pipeline::apply_mode(const core::OperatorCommand& command) {
       if (!control_->damp() && !limp) {
         return desk_.refuse(command, {Reason::not_now, "not in this phase"});
       }
-      plans_.clear();
+      decision_.drop();
       desk_.withdraw_target("the operator damped the robot");
       desk_.set_mode(Mode::held);
       desk_.accept(command, "the drives only brake from now on");

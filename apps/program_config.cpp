@@ -26,6 +26,7 @@ ProgramConfig ProgramConfig::load(const std::filesystem::path& file) {
   const core::ConfigReader root = core::ConfigReader::from_file(file);
   ProgramConfig config;
   config.runtime = RuntimeConfig::load(root.section("runtime"));
+  config.threads = ThreadsConfig::load(root.section("threads"));
   const core::ConfigReader model_section = root.section("model");
   config.stand_posture = model::StandPosture::load(model_section.section("stand_posture"));
   model_section.finish();

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "apps/real_time.hpp"
 #include "control/control_config.hpp"
 #include "core/config_reader.hpp"
 #include "footstep/footstep_config.hpp"
@@ -30,6 +31,7 @@ struct RuntimeConfig {
 /// `config/hopscotch.yaml`, whole.
 struct ProgramConfig {
   RuntimeConfig runtime;
+  ThreadsConfig threads;
   model::StandPosture stand_posture;
   perception::PerceptionConfig perception;
   footstep::FootstepConfig footstep;

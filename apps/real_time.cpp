@@ -39,6 +39,9 @@ ThreadSetup ThreadSetup::load(const core::ConfigReader& section) {
 ThreadsConfig ThreadsConfig::load(const core::ConfigReader& section) {
   ThreadsConfig config;
   config.control = ThreadSetup::load(section.section("control"));
+  config.mpc = ThreadSetup::load(section.section("mpc"));
+  config.planning = ThreadSetup::load(section.section("planning"));
+  config.perception = ThreadSetup::load(section.section("perception"));
   section.finish();
   return config;
 }

@@ -15,9 +15,12 @@ struct ThreadSetup {
   static ThreadSetup load(const core::ConfigReader& section);
 };
 
-/// Section `threads` of the bus file.
+/// Section `threads`: of `robot` by the clock and of `run --threads`.
 struct ThreadsConfig {
-  ThreadSetup control;  ///< Exchanges with the drives.
+  ThreadSetup control;     ///< Exchanges, estimator, phase machine, torque law.
+  ThreadSetup mpc;         ///< Wrenches for the next milliseconds.
+  ThreadSetup planning;    ///< Where the next jump lands, and how.
+  ThreadSetup perception;  ///< Depth frames into the map.
 
   static ThreadsConfig load(const core::ConfigReader& section);
 };

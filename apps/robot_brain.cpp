@@ -29,7 +29,9 @@ Pipeline::TerrainOracle level_floor() {
 }  // namespace
 
 RobotBrain::RobotBrain(const RobotConfig& config)
-    : pipeline_(tuning_for_the_floor(config), config.robot, {}, level_floor()),
+    : pipeline_(
+          tuning_for_the_floor(config), config.robot, {}, level_floor(),
+          config.pacing.mode == Pacing::Mode::real_time ? Threading::threads : Threading::lockstep),
       jumps_per_command_(config.session.jumps_per_command) {}
 
 SessionBrain RobotBrain::session_brain() {

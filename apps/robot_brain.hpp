@@ -8,8 +8,7 @@
 
 namespace hopscotch::apps {
 
-/// The whole pipeline for the robot's session, in lock-step with its exchanges, on a floor that the
-/// operator vouches for as level.
+/// The whole pipeline for the robot's session, on a floor that the operator vouches for as level.
 class RobotBrain {
  public:
   explicit RobotBrain(const RobotConfig& config);

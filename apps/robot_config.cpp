@@ -59,7 +59,6 @@ RobotConfig RobotConfig::load(const fs::path& file) {
   config.soft_stop = hardware::SoftStopConfig::load(root.section("soft_stop"));
   config.session = SessionConfig::load(root.section("session"));
   config.pacing = Pacing::load(root.section("pacing"));
-  config.threads = ThreadsConfig::load(root.section("threads"));
   config.emulation = EmulationConfig::load(root.section("emulation"), folder);
   root.finish();
   const std::string problem = hardware::range_problem(config.topology, config.robot);

@@ -7,7 +7,6 @@
 
 #include "apps/fault_script.hpp"
 #include "apps/program_config.hpp"
-#include "apps/real_time.hpp"
 #include "hardware/bus_topology.hpp"
 #include "hardware/homing.hpp"
 #include "hardware/imu.hpp"
@@ -62,7 +61,6 @@ struct RobotConfig {
   hardware::ImuSetup imu;
   SessionConfig session;
   Pacing pacing;
-  ThreadsConfig threads;
   EmulationConfig emulation;
 
   /// @throws core::ConfigError naming file, line, key, value and rule; also where a drive's range

@@ -31,12 +31,18 @@ void SimCamera::expose(const core::RobotState& truth) {
   next_index_ = index + 1;
 }
 
-std::optional<core::DepthFrame> SimCamera::poll(core::Stamp now) {
+std::optional<SimCamera::Exposure> SimCamera::due(core::Stamp now) {
   if (pending_.empty()) return std::nullopt;
   if (now < pending_.front().truth.stamp.after(settings_.latency)) return std::nullopt;
   const Exposure exposure = pending_.front();
   pending_.pop_front();
-  return draw(exposure);
+  return exposure;
+}
+
+std::optional<core::DepthFrame> SimCamera::poll(core::Stamp now) {
+  const std::optional<Exposure> exposure = due(now);
+  if (!exposure) return std::nullopt;
+  return draw(*exposure);
 }
 
 core::DepthFrame SimCamera::draw(const Exposure& exposure) {

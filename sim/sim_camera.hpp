@@ -18,7 +18,7 @@ namespace hopscotch::sim {
 /// The depth camera on the simulated trunk. Exposure k is due k / rate after time zero and happens
 /// at the first `expose` from then on, with the true state of that tick; the frame carries that
 /// tick's stamp and can be polled exactly `latency` later. The image is drawn when it is polled, so
-/// `expose` costs nothing worth counting. One thread, or a lock around both calls.
+/// `expose` costs nothing worth counting. One thread, but for `draw`.
 class SimCamera : public core::DepthSource {
  public:
   /// @param robot Whose legs are in view.
@@ -32,14 +32,17 @@ class SimCamera : public core::DepthSource {
 
   std::optional<core::DepthFrame> poll(core::Stamp now) override;
 
- private:
+  /// poll() in two steps, for who draws on another thread.
   struct Exposure {
-    std::uint64_t index;
+    std::uint64_t index = 0;
     core::RobotState truth;
   };
-
+  /// The oldest exposure that can be polled by `now`; it is then no longer waiting.
+  [[nodiscard]] std::optional<Exposure> due(core::Stamp now);
+  /// Milliseconds. One thread at a time, which may be another than that of the other calls.
   [[nodiscard]] core::DepthFrame draw(const Exposure& exposure);
 
+ private:
   CameraSettings settings_;
   model::RobotParameters robot_;
   std::vector<Face> faces_;

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "apps/emulated_robot.hpp"
 #include "apps/fault_script.hpp"
+#include "apps/real_time.hpp"
 #include "apps/robot_brain.hpp"
 #include "apps/robot_config.hpp"
 #include "apps/robot_session.hpp"
@@ -63,6 +65,7 @@ class WiredRobot {
   hardware::RobotPlant plant;
   RobotSession session;
   RobotBrain brain;
+  std::optional<PeriodicWake> wake;  ///< Set: exchanges wait for the clock.
   bool fallen = false;
   int stall_ticks = 0;  ///< The host oversleeps its next exchange by so much.
 
@@ -76,6 +79,7 @@ class WiredRobot {
     ports.imu = [this] { return world.imu(); };
     const int period = static_cast<int>(std::lround(1000.0 / config.topology.rate));
     ports.wait = [this, period] {
+      if (wake) wake->wait();
       for (int i = 0; i < period + stall_ticks; ++i) {
         script.play(world);
         world.advance();
@@ -88,7 +92,10 @@ class WiredRobot {
 };
 
 inline RobotConfig wired_config() {
-  return RobotConfig::load(std::string(HOPSCOTCH_SOURCE_DIR) + "/config/robot_bus.yaml");
+  RobotConfig config =
+      RobotConfig::load(std::string(HOPSCOTCH_SOURCE_DIR) + "/config/robot_bus.yaml");
+  config.pacing.mode = Pacing::Mode::lockstep;
+  return config;
 }
 
 }  // namespace hopscotch::apps::testing

@@ -48,6 +48,24 @@ TEST(WiredRobot, StandsUpLeapsThreeTimesAndStopsOnCommand) {
   EXPECT_FALSE(any_drive_on(robot));
 }
 
+// Planning, MPC and perception on threads of their own, as on a robot. The clock is slowed down, so
+// that a busy machine keeps up.
+TEST(WiredRobot, LeapsWithItsStagesOnThreads) {
+  RobotConfig config = testing::wired_config();
+  config.pacing.mode = Pacing::Mode::real_time;
+  WiredRobot robot(config);
+  robot.wake.emplace(0.003);
+  ASSERT_TRUE(robot.stand());
+  robot.ask(core::ModeRequest::jump);
+  ASSERT_TRUE(robot.run_until([&] { return robot.brain.jumps() == 1; }, 8.0))
+      << core::reason_code(robot.session.fault().reason) << " "
+      << hardware::describe(robot.session.fault().plant, robot.world.topology());
+  robot.run(1.5);
+  EXPECT_EQ(robot.session.stage(), SessionStage::active);
+  EXPECT_FALSE(robot.fallen);
+  EXPECT_NEAR(robot.world.truth().state.p_WB.x(), 0.25, 0.06);
+}
+
 constexpr int kLeftKnee = 3;
 constexpr std::size_t kKneeBus = 1;
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/delayed.hpp"
 #include "model/kinematics.hpp"
 
 namespace hopscotch::apps {
@@ -51,16 +50,6 @@ TEST(StateHistory, ForgetsTheOldestFirst) {
   for (int i = 0; i < 2000; ++i) history.add(state_at(0.001 * i));
   EXPECT_FALSE(history.at(core::Stamp::from_seconds(1.0)).has_value());
   EXPECT_NEAR(history.at(core::Stamp::from_seconds(1.6))->q[0], 1.6, 1e-9);
-}
-
-TEST(Delayed, ValuesComeOutInOrderAndNotBeforeTheirTime) {
-  Delayed<int> delayed;
-  delayed.push(1, core::Stamp::from_seconds(0.010));
-  delayed.push(2, core::Stamp::from_seconds(0.020));
-  EXPECT_FALSE(delayed.pop(core::Stamp::from_seconds(0.0099)).has_value());
-  EXPECT_EQ(delayed.pop(core::Stamp::from_seconds(0.020)), 1);
-  EXPECT_EQ(delayed.pop(core::Stamp::from_seconds(0.020)), 2);
-  EXPECT_TRUE(delayed.empty());
 }
 
 }  // namespace
