@@ -31,15 +31,21 @@ Eigen::Vector3d planned_mid_sole(const model::RobotParameters& robot, const core
   return mid_sole(model::sole_poses(robot, state));
 }
 
-/// The state `delay` later if it goes on as it is [s].
-core::RobotState extrapolate(const core::RobotState& state, double delay) {
+/// The state `delay` later [s], its rates changing as the plan's do: what acts until then has been
+/// sent already.
+/// @param now, then The plan where the body is, and `delay` later.
+core::RobotState extrapolate(const core::RobotState& state, double delay, const core::JumpKnot& now,
+                             const core::JumpKnot& then) {
   core::RobotState later = state;
   later.stamp = state.stamp.after(delay);
-  later.p_WB += delay * state.v_WB;
-  const Eigen::Vector3d turn = delay * state.w_WB;
+  later.v_WB += then.v_WB - now.v_WB;
+  later.w_WB += then.w_WB - now.w_WB;
+  later.dq += then.dq - now.dq;
+  later.p_WB += 0.5 * delay * (state.v_WB + later.v_WB);
+  const Eigen::Vector3d turn = 0.5 * delay * (state.w_WB + later.w_WB);
   const double angle = turn.norm();
   if (angle > 0.0) later.R_WB = Eigen::AngleAxisd(angle, turn / angle) * state.R_WB;
-  later.q += delay * state.dq;
+  later.q += 0.5 * delay * (state.dq + later.dq);
   return later;
 }
 
@@ -300,11 +306,13 @@ void ControlTick::set_feed_forward(const core::RobotState& state,
 
 void ControlTick::question(MpcQuestion& out) const noexcept {
   const double delay = config_.mpc_delay + config_.actuation_delay;
-  out.state = extrapolate(state_, delay);
   out.form = core::is_pushing_off(phase()) ? takeoff_form() : MpcForm::full;
-  out.reference.stamp = out.state.stamp;
   // The body runs `actuation_delay` behind the commands; it will have moved on by `delay`.
   const double time = command_time(state_.stamp) + config_.mpc_delay;
+  const double phase_begin = core::is_pushing_off(phase()) ? 0.0 : plan_.touchdown_time;
+  out.state = extrapolate(state_, delay, sample_plan(plan_, std::max(time - delay, phase_begin)),
+                          sample_plan(plan_, time));
+  out.reference.stamp = out.state.stamp;
   if (config_.ablation == core::Ablation::fixed_frequency) {
     fill_reference_fixed(plan_, time, placement_, config_.fixed_step, out.reference);
   } else {

@@ -296,6 +296,22 @@ TEST_F(ControlTickTest, AFallFromAStandIsCaught) {
   EXPECT_EQ(control.phase(), RobotPhase::stand);
 }
 
+TEST_F(ControlTickTest, TheMpcIsAskedAboutTheMomentItsAnswerActs) {
+  ControlTick control = standing();
+  step(control);
+  control.offer(plan_);
+  for (int i = 0; i < 40; ++i) step(control);
+  MpcQuestion question;
+  question.reference.horizon = 10;
+  control.question(question);
+  const double delay = question.state.stamp.since(control.status().stamp);
+  EXPECT_NEAR(delay, kActuationDelay + 0.001, 1e-9);
+  constexpr double kAcceleration = 2.0;  // of the plan [m/s^2]
+  EXPECT_NEAR(question.state.v_WB.x() - state_.v_WB.x(), delay * kAcceleration, 1e-9);
+  EXPECT_NEAR(question.state.p_WB.x() - state_.p_WB.x(), 0.5 * delay * delay * kAcceleration, 1e-9);
+  EXPECT_NEAR(question.state.dq[0] - state_.dq[0], 0.01 * delay * kAcceleration, 1e-9);
+}
+
 TEST_F(ControlTickTest, AblationsChangeWhatTheyName) {
   ControlConfig config = test_config();
   MpcQuestion question;
