@@ -43,14 +43,6 @@ std::string again(const CampaignOptions& options, const std::string& more) {
          more;
 }
 
-/// What this version cannot run is said before anything is begun.
-std::optional<std::string> missing(const campaign::CampaignSpec& spec) {
-  if (spec.ablation != campaign::Ablation::none) {
-    return "ablation: " + std::string(ablation_name(spec.ablation)) + " is not there yet.";
-  }
-  return std::nullopt;
-}
-
 ExitStatus run_one(const CampaignOptions& options, const campaign::TrialMaker& maker) {
   const std::int64_t count = maker.spec().cells() * maker.spec().trials;
   if (*options.trial < 0 || *options.trial >= count) {
@@ -141,10 +133,6 @@ ExitStatus run_all(const CampaignOptions& options, const campaign::TrialMaker& m
 
 ExitStatus run(const CampaignOptions& options) {
   const campaign::CampaignSpec spec = campaign::CampaignSpec::load(options.spec);
-  if (const std::optional<std::string> lack = missing(spec)) {
-    std::fprintf(stderr, "hopscotch: %s: %s\n", options.spec.c_str(), lack->c_str());
-    return ExitStatus::machine_lacks;
-  }
   const campaign::TrialMaker maker(spec);
   if (!options.chunk.empty()) {
     campaign::run_chunk(maker, {options.out / "parts"}, options.chunk);

@@ -48,6 +48,7 @@ Size with(Size size, double fallback) {
 const std::vector<FamilyRule>& family_rules() {
   static const std::vector<FamilyRule> rules{
       {Family::flat, "flat", 0, {kJump}},
+      {Family::leap, "leap", 0, {kJump, with(kEdge, 0.13), kStep}},
       {Family::steps, "steps", 6, {kEdge, kStep, with(kTread, 0.40)}},
       {Family::gaps, "gaps", 6, {kEdge, kGap, kTread}},
       {Family::stones, "stones", 6, {kEdge, with(kGap, 0.20), kStep, with(kTread, 0.25)}},
@@ -120,6 +121,7 @@ Approach approach_of(const FamilySpec& spec, const SizeDraw& size, int i) {
     }
     case Family::mixture: return mixed_approach(size, i);
     case Family::flat:
+    case Family::leap:
     case Family::jump_down:
     case Family::drops: break;
   }
@@ -169,6 +171,16 @@ sim::Scenario level_ground(const FamilySpec& spec) {
   return scenario;
 }
 
+sim::Scenario leap(const SizeDraw& size) {
+  const double edge = size("edge_m", 0);
+  sim::Scenario scenario;
+  scenario.seen.slabs = {slab(-kBehind, edge, 0.0),
+                         slab(edge, edge + kLastTread, size("step_m", 0))};
+  scenario.seen.pit_depth = kPitDepth - std::min(0.0, size("step_m", 0));
+  scenario.goal.jumps = 1;
+  return scenario;
+}
+
 sim::Scenario drop(const SizeDraw& size) {
   sim::Scenario scenario = level_ground({});
   scenario.start.drop = size("drop_m", 0);
@@ -204,6 +216,7 @@ sim::Scenario family_scenario(const FamilySpec& family, const SizeDraw& size) {
   sim::Scenario scenario;
   switch (family.family) {
     case Family::flat: scenario = level_ground(family); break;
+    case Family::leap: scenario = leap(size); break;
     case Family::jump_down: scenario = jump_down(size); break;
     case Family::drops: scenario = drop(size); break;
     default: scenario = chain(family, size); break;

@@ -15,6 +15,7 @@ namespace hopscotch::apps::campaign {
 /// A kind of terrain whose sizes are drawn anew for each trial.
 enum class Family : std::uint8_t {
   flat,            ///< Level ground, so many jumps of about one length.
+  leap,            ///< One jump of about one length, up or down where the ground changes height.
   steps,           ///< Treads without gaps, each higher or lower than the one before.
   gaps,            ///< Level treads with gaps between them.
   stones,          ///< Treads with gaps, each at its own height about the ground's.

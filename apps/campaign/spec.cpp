@@ -1,7 +1,6 @@
 #include "apps/campaign/spec.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "apps/campaign/scenario_text.hpp"
 #include "apps/text_file.hpp"
@@ -14,8 +13,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<std::string_view, 5> kAblations{"none", "fixed-frequency", "no-landing-plan",
-                                                     "paper-takeoff", "srbd-only"};
 constexpr int kMostTrials = 10'000'000;
 constexpr std::int64_t kMostCells = 10'000;
 constexpr std::int64_t kMostRows = 100'000'000;  // one byte of memory each while running
@@ -40,6 +37,7 @@ const std::vector<FactorRule>& vary_rules() {
       {.name = "camera.x_m", .range = Range::closed(-0.5, 0.5)},
       {.name = "camera.z_m", .range = Range::closed(-0.5, 0.5)},
       {.name = "camera.pitch_rad", .range = Range::closed(-1.5, 1.5)},
+      {.name = "ablation", .choices = {core::kAblationNames.begin(), core::kAblationNames.end()}},
   };
   return rules;
 }
@@ -159,6 +157,9 @@ void require_meaning(const ConfigReader& reader, const CampaignSpec& spec) {
   if (one_slab && varied("surprise_height_m")) {
     reader.reject("vary", "must not hold surprise_height_m: the scenario has one slab only");
   }
+  if (spec.ablation != core::Ablation::none && varied("ablation")) {
+    reader.reject("ablation", "must not stand beside vary.ablation");
+  }
   if (spec.cells() > kMostCells) reader.reject("vary", "must span at most 10000 cells");
   if (spec.cells() * spec.trials > kMostRows) {
     reader.reject("trials", "must not make more than 1e8 trials of all cells together");
@@ -166,10 +167,6 @@ void require_meaning(const ConfigReader& reader, const CampaignSpec& spec) {
 }
 
 }  // namespace
-
-std::string_view ablation_name(Ablation ablation) {
-  return kAblations[static_cast<std::size_t>(ablation)];
-}
 
 std::int64_t CampaignSpec::cells() const {
   std::int64_t count = 1;
@@ -202,8 +199,8 @@ CampaignSpec CampaignSpec::from_text(std::string_view text, const fs::path& file
     spec.state = static_cast<StateSource>(reader.choice("state", {"estimate", "truth"}));
   }
   if (reader.has("ablation")) {
-    spec.ablation =
-        static_cast<Ablation>(reader.choice("ablation", {kAblations.begin(), kAblations.end()}));
+    spec.ablation = static_cast<core::Ablation>(
+        reader.choice("ablation", {core::kAblationNames.begin(), core::kAblationNames.end()}));
   }
   spec.trials = reader.integer("trials", 1, kMostTrials);
   spec.seed = static_cast<std::uint64_t>(reader.integer_or("seed", 1, 0, 2'000'000'000));

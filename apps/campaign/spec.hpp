@@ -10,19 +10,10 @@
 #include "apps/campaign/factor.hpp"
 #include "apps/campaign/family.hpp"
 #include "apps/lockstep_run.hpp"
+#include "core/ablation.hpp"
 #include "sim/scenario.hpp"
 
 namespace hopscotch::apps::campaign {
-
-/// Part of the method that is left out, to see what it is worth.
-enum class Ablation : std::uint8_t {
-  none,
-  fixed_frequency,  ///< The MPC samples at one rate instead of the plan's.
-  no_landing_plan,  ///< One constant pose from touchdown on.
-  paper_takeoff,    ///< Take-off by the paper's equation alone.
-  srbd_only,        ///< Plan and tracking by one rigid body.
-};
-[[nodiscard]] std::string_view ablation_name(Ablation ablation);
 
 /// Ends a cell before all its trials once its rate is known well enough.
 struct StopRule {
@@ -45,7 +36,7 @@ struct CampaignSpec {
   std::string scenario_name;  ///< Family, or name of the scenario file.
   Eyes eyes = Eyes::camera;
   StateSource state = StateSource::estimate;
-  Ablation ablation = Ablation::none;
+  core::Ablation ablation = core::Ablation::none;
   int trials = 0;  ///< Per cell.
   std::uint64_t seed = 1;
   std::vector<Factor> factors;  ///< Of the family first, then of `vary`, in the file's order.

@@ -182,6 +182,10 @@ TrialSetup TrialMaker::setup(std::int64_t index) const {
   draw.apply("start.yaw_rad", scenario.start.yaw);
   draw.apply("start.drop_m", scenario.start.drop);
   draw.apply("jump_m", setup.jump_length);
+  setup.ablation = spec_.ablation;
+  if (draw.has("ablation")) {
+    setup.ablation = static_cast<core::Ablation>(std::lround(draw("ablation")));
+  }
   setup.scenario_text = scenario_text(scenario);
   setup.scenario = sim::Scenario::from_text(setup.scenario_text,
                                             spec_.name + ", trial " + std::to_string(index));
@@ -201,6 +205,7 @@ RunRequest TrialMaker::request(const TrialSetup& setup, Eyes eyes) const {
   request.seed = setup.seed;
   request.eyes = eyes;
   request.state = spec_.state;
+  request.ablation = setup.ablation;
   return request;
 }
 
@@ -217,7 +222,7 @@ RunSources TrialMaker::sources(const TrialSetup& setup) const {
 std::string TrialMaker::identity() const {
   std::string text = spec_.pairing() + "eyes " + std::to_string(static_cast<int>(spec_.eyes)) +
                      "\nstate " + std::to_string(static_cast<int>(spec_.state)) + "\nablation " +
-                     std::string(ablation_name(spec_.ablation)) + "\n" + config_text_;
+                     std::string(core::ablation_name(spec_.ablation)) + "\n" + config_text_;
   for (const auto& [name, robot] : robots_) text += name + "\n" + robot.text;
   return fingerprint(text);
 }

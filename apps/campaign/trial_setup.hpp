@@ -19,6 +19,7 @@ struct TrialSetup {
   sim::Scenario scenario;
   std::string scenario_text;        ///< The scenario as a file.
   double jump_length = core::kNaN;  ///< Wanted; NaN: as configured [m].
+  core::Ablation ablation = core::Ablation::none;
   /// Of each factor of the campaign, in its order. A factor that is drawn for each tread is told
   /// by its hardest draw: the largest by magnitude, the shortest of a tread. NaN: not used here.
   std::vector<double> values;

@@ -147,9 +147,41 @@ TEST(Draws, MoreTrialsKeepTheIdentityAndOtherMeaningsChangeIt) {
   EXPECT_EQ(ten.spec().pairing(), ablated.spec().pairing());
 }
 
+TEST(Draws, AblationsAreCellsThatShareAllDraws) {
+  const TrialMaker maker(
+      spec_of(kHead +
+              "scenario: {family: leap, step_m: [0.1, 0.2]}\n"
+              "vary:\n  ablation: {grid: [none, paper-takeoff]}\n  friction: [0.4, 0.8]\n"));
+  ASSERT_EQ(maker.spec().cells(), 2);
+  const TrialSetup whole = maker.setup(6);
+  const TrialSetup less = maker.setup(7);
+  EXPECT_EQ(maker.request(whole, Eyes::truth).ablation, core::Ablation::none);
+  EXPECT_EQ(maker.request(less, Eyes::truth).ablation, core::Ablation::paper_takeoff);
+  EXPECT_EQ(whole.seed, less.seed);
+  EXPECT_EQ(whole.scenario_text, less.scenario_text);
+  EXPECT_THAT(error_of(kHead + "scenario: {family: leap}\nablation: srbd-only\n"
+                               "vary:\n  ablation: no-landing-plan\n"),
+              HasSubstr("vary.ablation"));
+}
+
+TEST(Draws, TheCampaignsAblationIsThatOfItsRuns) {
+  const TrialMaker maker(spec_of(kHead + "scenario: {family: leap}\nablation: no-landing-plan\n"));
+  EXPECT_EQ(maker.request(maker.setup(0), Eyes::truth).ablation, core::Ablation::no_landing_plan);
+}
+
+TEST(Families, ALeapIsAsLongAndAsHighAsAsked) {
+  const TrialMaker maker(
+      spec_of(kHead + "scenario: {family: leap, jump_m: 0.4, edge_m: 0.28, step_m: 0.2}\n"));
+  const TrialSetup setup = maker.setup(0);
+  ASSERT_EQ(setup.scenario.seen.slabs.size(), 2U);
+  EXPECT_NEAR(setup.scenario.seen.slabs[1].lowest(), 0.2, 1e-9);
+  EXPECT_EQ(setup.scenario.goal.jumps, 1);
+  EXPECT_EQ(maker.request(setup, Eyes::truth).config.footstep.preference.nominal_distance, 0.4);
+}
+
 TEST(Families, AllMakeScenariosThatReadBack) {
-  for (const char* family : {"flat", "steps", "gaps", "stones", "stairs", "rising-boxes", "slopes",
-                             "steps-and-gaps", "random-mixture", "jump-down", "drops"}) {
+  for (const char* family : {"flat", "leap", "steps", "gaps", "stones", "stairs", "rising-boxes",
+                             "slopes", "steps-and-gaps", "random-mixture", "jump-down", "drops"}) {
     const TrialMaker maker(spec_of(kHead + "scenario: {family: " + family + "}\n"));
     for (std::int64_t i = 0; i < 10; ++i) {
       const TrialSetup setup = maker.setup(i);
