@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/allocation_count.hpp"
 #include "apps/stopwatch.hpp"
+#include "core/allocation_count.hpp"
 #include "core/check.hpp"
 #include "model/kinematics.hpp"
 #include "model/stand_posture.hpp"
@@ -62,10 +62,10 @@ core::JointCommand Pipeline::tick(const core::SensorReadings& readings, core::De
   events_ = {};
   if (control_ && readings.stamp <= state_.stamp) return command_;
   const Stopwatch watch;
-  const std::size_t before = allocation_count();
+  const std::size_t before = core::allocation_count();
   state_ = estimator_.update(
       readings, control_ ? control_->expected_contact() : control::ContactExpectation::support);
-  events_.allocations += allocation_count() - before;
+  events_.allocations += core::allocation_count() - before;
   events_.estimator_ms = watch.milliseconds();
   if (control_) control_->observe_drives(readings);
   run_stages(camera);
@@ -87,9 +87,9 @@ void Pipeline::run_stages(core::DepthSource& camera) {
   look(state_.stamp, camera);
   decide(state_);
   const Stopwatch watch;
-  const std::size_t before = allocation_count();
+  const std::size_t before = core::allocation_count();
   command_ = control_->tick(state_);
-  events_.allocations += allocation_count() - before;
+  events_.allocations += core::allocation_count() - before;
   events_.tick_ms = watch.milliseconds();
   balance(state_.stamp);
   watch_mission(state_);

@@ -136,6 +136,8 @@ class Pipeline {
   /// The state that the last tick worked on.
   [[nodiscard]] const core::RobotState& state() const { return state_; }
   [[nodiscard]] const control::StateEstimator& estimator() const { return estimator_; }
+  /// In lock-step only: with threads it may be at work.
+  [[nodiscard]] const control::WrenchMpc& mpc() const { return mpc_; }
   /// Results that came later than their stage's declared latency; none in lock-step.
   [[nodiscard]] std::uint64_t late_results() const {
     return sight_.late() + decision_.late() + balance_.late();

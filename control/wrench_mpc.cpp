@@ -28,6 +28,7 @@ struct WrenchMpc::Workspace {
   int horizon;
   model::RobotParameters robot;
   WrenchQp qp;
+  WarmStartMap start_map{};  // of `qp`
   QpSolver solver;
   MpcStatistics statistics;
 
@@ -82,7 +83,8 @@ MpcStatus WrenchMpc::solve(const core::RobotState& state, const core::ControlRef
   Workspace& w = *workspace_;
   if (!can_pose(state, reference, w.horizon)) return MpcStatus::bad_input;
   pose_problem(w.robot, state, reference, form, w.qp);
-  const QpStatus status = w.solver.solve_warm(w.qp, w.map_to_previous(reference, form));
+  w.start_map = w.map_to_previous(reference, form);
+  const QpStatus status = w.solver.solve_warm(w.qp, w.start_map);
   if (status == QpStatus::bad_input || status == QpStatus::infeasible) return mpc_status(status);
   w.remember_window(reference, form);
   w.statistics = {w.solver.iterations(), w.solver.started_warm(), w.solver.gap(),
@@ -102,6 +104,9 @@ const MpcStatistics& WrenchMpc::statistics() const noexcept {
 }
 const WrenchQp& WrenchMpc::qp() const noexcept {
   return workspace_->qp;
+}
+const WarmStartMap& WrenchMpc::warm_start_map() const noexcept {
+  return workspace_->start_map;
 }
 const QpSolver& WrenchMpc::solver() const noexcept {
   return workspace_->solver;

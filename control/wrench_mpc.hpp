@@ -73,8 +73,9 @@ class WrenchMpc {
 
   /// Of the last call that reached the QP.
   [[nodiscard]] const MpcStatistics& statistics() const noexcept;
-  /// The last QP and its solution, for tests and benchmarks.
+  /// The last QP, where its warm start came from and its solution, for tests and benchmarks.
   [[nodiscard]] const WrenchQp& qp() const noexcept;
+  [[nodiscard]] const WarmStartMap& warm_start_map() const noexcept;
   [[nodiscard]] const QpSolver& solver() const noexcept;
 
  private:

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "control/torque_law.hpp"
+#include "core/allocation_count.hpp"
 #include "model/kinematics.hpp"
 #include "model/rigid_body.hpp"
-#include "tests/unit/control/allocation_counter.hpp"
 #include "tests/unit/control/fake_plan.hpp"
 
 namespace hopscotch::control {
@@ -201,7 +201,7 @@ TEST_F(ControlTickTest, AWholeJumpAllocatesNothing) {
   MpcQuestion question;
   question.reference.horizon = 10;
   step(control);
-  const std::size_t before = testing::allocation_count();
+  const std::size_t before = core::allocation_count();
   control.offer(plan_);
   for (int i = 0; i < 600; ++i) {
     const bool contact = control.phase() != RobotPhase::flight || i > 300;
@@ -210,7 +210,7 @@ TEST_F(ControlTickTest, AWholeJumpAllocatesNothing) {
     control.question(question);
     control.answer({.stamp = state_.stamp, .status = MpcStatus::solved, .form = question.form});
   }
-  EXPECT_EQ(testing::allocation_count() - before, 0U);
+  EXPECT_EQ(core::allocation_count() - before, 0U);
   EXPECT_EQ(control.phase(), RobotPhase::stand);
 }
 

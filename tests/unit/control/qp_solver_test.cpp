@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/control/allocation_counter.hpp"
+#include "core/allocation_count.hpp"
 #include "tests/unit/control/dense_qp.hpp"
 #include "tests/unit/control/random_wrench_qp.hpp"
 
@@ -203,19 +203,19 @@ TEST(QpSolver, SolvingAllocatesNothing) {
   const WrenchQp qp = some_problem();
   WarmStartMap map{};
   QpSolver solver(kTolerances);
-  const std::size_t before = testing::allocation_count();
+  const std::size_t before = core::allocation_count();
   const QpStatus cold = solver.solve_cold(qp);
   const QpStatus warm = solver.solve_warm(qp, map);
-  const std::size_t after = testing::allocation_count();
+  const std::size_t after = core::allocation_count();
   EXPECT_EQ(cold, QpStatus::solved);
   EXPECT_EQ(warm, QpStatus::solved);
   EXPECT_EQ(after, before);
 }
 
 TEST(QpSolver, AllocationCounterCounts) {
-  const std::size_t before = testing::allocation_count();
+  const std::size_t before = core::allocation_count();
   const QpSolver solver(kTolerances);
-  EXPECT_GT(testing::allocation_count(), before);
+  EXPECT_GT(core::allocation_count(), before);
 }
 
 TEST(QpSolver, HorizonWithoutContactHasNothingToChoose) {

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "control/torque_law.hpp"
+#include "core/allocation_count.hpp"
 #include "model/gravity.hpp"
 #include "model/joint_momentum.hpp"
 #include "model/kinematics.hpp"
-#include "tests/unit/control/allocation_counter.hpp"
 #include "tests/unit/control/estimator_fixture.hpp"
 
 namespace hopscotch::control {
@@ -138,12 +138,12 @@ TEST_F(StateEstimatorTest, BadReadingsReachTheSupervisorAndNotTheFilter) {
 
 TEST_F(StateEstimatorTest, ItAllocatesNothing) {
   StateEstimator estimator(testing::estimator_config(), robot_, start_);
-  const std::size_t before = testing::allocation_count();
+  const std::size_t before = core::allocation_count();
   feed(estimator, standing(), 50, ContactExpectation::support);
   feed(estimator, falling(), 50, ContactExpectation::touchdown);
   feed(estimator, standing(), 50, ContactExpectation::touchdown);
   estimator.correct_height(0.0);
-  EXPECT_EQ(testing::allocation_count() - before, 0U);
+  EXPECT_EQ(core::allocation_count() - before, 0U);
 }
 
 }  // namespace

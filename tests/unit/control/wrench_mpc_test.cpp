@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "tests/unit/control/allocation_counter.hpp"
+#include "core/allocation_count.hpp"
 #include "tests/unit/control/mpc_samples.hpp"
 
 namespace hopscotch::control {
@@ -255,11 +255,11 @@ TEST_F(WrenchMpcTest, SolvingAllocatesNothing) {
   const core::ControlReference reference =
       testing::stay(robot_, testing::standing(robot_, 0.3), kHorizon);
   core::ContactWrenches wrenches;
-  const std::size_t before = testing::allocation_count();
+  const std::size_t before = core::allocation_count();
   const MpcStatus cold = mpc.solve(state, reference, MpcForm::full, wrenches);
   const MpcStatus warm = mpc.solve(state, reference, MpcForm::full, wrenches);
   const MpcStatus other = mpc.solve(state, reference, MpcForm::error_state, wrenches);
-  const std::size_t after = testing::allocation_count();
+  const std::size_t after = core::allocation_count();
   EXPECT_EQ(cold, MpcStatus::solved);
   EXPECT_EQ(warm, MpcStatus::solved);
   EXPECT_EQ(other, MpcStatus::solved);

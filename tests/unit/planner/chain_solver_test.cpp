@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/allocation_count.hpp"
 #include "planner/ipopt_problem.hpp"
-#include "tests/unit/control/allocation_counter.hpp"
 #include "tests/unit/planner/chain_fixture.hpp"
 
 namespace hopscotch::planner::testing_support {
@@ -106,10 +106,10 @@ TEST(ChainSolver, StartsAgainFromANeighbour) {
 TEST(ChainSolver, SolvingAllocatesNothing) {
   SolvedChain chain(0.40, 0.0, kOnLine);
   const Eigen::VectorXd guess = kinematic_guess(chain.model, chain.task, chain.layout);
-  const std::size_t before = control::testing::allocation_count();
+  const std::size_t before = core::allocation_count();
   chain.outcome = chain.solver.solve(chain.problem, guess, kOnLine);
   chain.outcome = chain.solver.solve_again(chain.problem, kOnLine);
-  EXPECT_EQ(control::testing::allocation_count(), before);
+  EXPECT_EQ(core::allocation_count(), before);
   EXPECT_EQ(chain.outcome.status, SolveStatus::solved);
 }
 

@@ -1,4 +1,4 @@
-#include "apps/allocation_count.hpp"
+#include "core/allocation_count.hpp"
 
 #include <cstdlib>
 #include <new>
@@ -37,10 +37,10 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
   std::free(memory);
 }
 
-namespace hopscotch::apps {
+namespace hopscotch::core {
 
 std::size_t allocation_count() {
   return g_count;
 }
 
-}  // namespace hopscotch::apps
+}  // namespace hopscotch::core
