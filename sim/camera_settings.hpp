@@ -17,6 +17,12 @@ struct CameraSettings {
   double x = 0.09;        ///< Optical centre ahead of B [m].
   double z = 0.08;        ///< Optical centre above B [m].
   double pitch = 0.60;    ///< Of the optical axis below the trunk's x axis [rad].
+
+  // Faults that nobody tells the controller of.
+  double lost_pixels = 0.0;  ///< Share of the image that measures nothing, in blocks of 8 pixels.
+  double lost_frames = 0.0;  ///< Share of the exposures that never arrive.
+  double time_error = 0.0;   ///< Stamps are later than the exposure by this [s].
+  double pitch_error = 0.0;  ///< It looks further down than its mounting says [rad].
 };
 
 }  // namespace hopscotch::sim

@@ -24,10 +24,10 @@ using RowMatrix3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 constexpr std::uint64_t kStartStream = 0x57;  // the start variation's own random numbers
 
-model::RobotParameters scaled_masses(model::RobotParameters robot, double scale) {
-  const auto scale_link = [scale](model::LinkParameters& link) {
-    link.mass *= scale;
-    link.inertia *= scale;
+model::RobotParameters scaled_links(model::RobotParameters robot, const PlantSetup& plant) {
+  const auto scale_link = [&plant](model::LinkParameters& link) {
+    link.mass *= plant.mass_scale;
+    link.inertia *= plant.mass_scale * plant.inertia_scale;
   };
   scale_link(robot.trunk);
   for (model::JointParameters& joint : robot.joints) scale_link(joint.link);
@@ -139,7 +139,7 @@ struct MujocoPlant::World {
 };
 
 MujocoPlant::World::World(const PlantOptions& options)
-    : robot(scaled_masses(options.robot, options.scenario.plant.mass_scale)),
+    : robot(scaled_links(options.robot, options.scenario.plant)),
       motor_strength(options.scenario.plant.motor_strength),
       exchange_period(options.scenario.plant.exchange_period),
       model(compile_model(scene_mjcf(robot, options.scenario.true_terrain()))),

@@ -40,6 +40,10 @@ CameraSettings read_camera(const ConfigReader& reader) {
   camera.x = reader.number_or("x_m", camera.x, Range::closed(-0.5, 0.5));
   camera.z = reader.number_or("z_m", camera.z, Range::closed(-0.5, 0.5));
   camera.pitch = reader.number_or("pitch_rad", camera.pitch, Range::closed(-1.5, 1.5));
+  camera.lost_pixels = reader.number_or("lost_pixels", 0.0, Range::closed(0.0, 1.0));
+  camera.lost_frames = reader.number_or("lost_frames", 0.0, Range::closed(0.0, 1.0));
+  camera.time_error = 1e-3 * reader.number_or("time_error_ms", 0.0, Range::closed(-200.0, 200.0));
+  camera.pitch_error = reader.number_or("pitch_error_rad", 0.0, Range::closed(-0.3, 0.3));
   reader.finish();
   return camera;
 }
@@ -183,6 +187,8 @@ int read_exchange_period(const ConfigReader& reader) {
 PlantSetup read_plant(const ConfigReader& reader, PlantSetup plant) {
   plant.robot = read_robot(reader, plant.robot);
   plant.mass_scale = reader.number_or("mass_scale", plant.mass_scale, Range::closed(0.5, 2.0));
+  plant.inertia_scale =
+      reader.number_or("inertia_scale", plant.inertia_scale, Range::closed(0.5, 2.0));
   plant.motor_strength =
       reader.number_or("motor_strength", plant.motor_strength, Range::above(0.0, 2.0));
   plant.latency_ticks = read_latency_ticks(reader, plant.latency_ticks);

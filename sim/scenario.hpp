@@ -52,6 +52,7 @@ struct Push {
 struct PlantSetup {
   std::string robot = "hector";  ///< Default: the robot of the scenario.
   double mass_scale = 1.0;       ///< On masses and inertias of all links [-].
+  double inertia_scale = 1.0;    ///< On rotational inertias of all links, beside mass_scale [-].
   double motor_strength = 1.0;   ///< On torque, line and power of all motors [-].
   int latency_ticks = 2;         ///< Delay of set-points [ticks of 1 ms].
   int exchange_period = 1;       ///< Ticks between exchanges: 1 (1 kHz) or 2 (500 Hz).

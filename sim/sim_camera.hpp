@@ -39,19 +39,24 @@ class SimCamera : public core::DepthSource {
   };
   /// The oldest exposure that can be polled by `now`; it is then no longer waiting.
   [[nodiscard]] std::optional<Exposure> due(core::Stamp now);
-  /// Milliseconds. One thread at a time, which may be another than that of the other calls.
+  /// Milliseconds; the frame's stamp and mounting are as the controller is told. One thread at a
+  /// time, which may be another than that of the other calls.
   [[nodiscard]] core::DepthFrame draw(const Exposure& exposure);
 
  private:
   CameraSettings settings_;
   model::RobotParameters robot_;
   std::vector<Face> faces_;
-  Eigen::Isometry3d X_BC_;
+  std::uint64_t seed_;
+  Eigen::Isometry3d X_BC_;  // as the controller is told
+  Eigen::Isometry3d X_BC_true_;
   DepthRenderer renderer_;
   std::optional<DepthNoise> noise_;
   std::int64_t next_index_ = 0;
   std::deque<Exposure> pending_;
   std::vector<float> exact_;  ///< Image before noise [m].
+
+  void lose_pixels(std::uint64_t index, core::DepthFrame& frame) const;
 };
 
 }  // namespace hopscotch::sim

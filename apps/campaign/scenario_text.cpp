@@ -46,11 +46,16 @@ std::string camera_text(const sim::CameraSettings& camera) {
          ", width: " + std::to_string(camera.width) + ", height: " + std::to_string(camera.height) +
          ", rate_Hz: " + exact_text(camera.rate) +
          ", latency_ms: " + exact_text(1e3 * camera.latency) + ", x_m: " + exact_text(camera.x) +
-         ", z_m: " + exact_text(camera.z) + ", pitch_rad: " + exact_text(camera.pitch) + "}\n";
+         ", z_m: " + exact_text(camera.z) + ", pitch_rad: " + exact_text(camera.pitch) +
+         ", lost_pixels: " + exact_text(camera.lost_pixels) +
+         ", lost_frames: " + exact_text(camera.lost_frames) +
+         ", time_error_ms: " + exact_text(1e3 * camera.time_error) +
+         ", pitch_error_rad: " + exact_text(camera.pitch_error) + "}\n";
 }
 
 std::string plant_text(const sim::PlantSetup& plant) {
   return "plant: {robot: " + plant.robot + ", mass_scale: " + exact_text(plant.mass_scale) +
+         ", inertia_scale: " + exact_text(plant.inertia_scale) +
          ", motor_strength: " + exact_text(plant.motor_strength) +
          ", latency_ms: " + std::to_string(plant.latency_ticks) +
          ", exchange_Hz: " + (plant.exchange_period == 1 ? "1000" : "500") +

@@ -23,6 +23,7 @@ const std::vector<FactorRule>& vary_rules() {
   static const std::vector<FactorRule> rules{
       {.name = "friction", .range = Range::above(0.0, 2.0)},
       {.name = "plant.mass_scale", .range = Range::closed(0.5, 2.0)},
+      {.name = "plant.inertia_scale", .range = Range::closed(0.5, 2.0)},
       {.name = "plant.motor_strength", .range = Range::above(0.0, 2.0)},
       {.name = "plant.latency_ms", .range = Range::closed(0.0, 50.0), .step = 1.0},
       {.name = "plant.exchange_Hz", .choices = {"1000", "500"}},
@@ -37,6 +38,10 @@ const std::vector<FactorRule>& vary_rules() {
       {.name = "camera.x_m", .range = Range::closed(-0.5, 0.5)},
       {.name = "camera.z_m", .range = Range::closed(-0.5, 0.5)},
       {.name = "camera.pitch_rad", .range = Range::closed(-1.5, 1.5)},
+      {.name = "camera.lost_pixels", .range = Range::closed(0.0, 1.0)},
+      {.name = "camera.lost_frames", .range = Range::closed(0.0, 1.0)},
+      {.name = "camera.time_error_ms", .range = Range::closed(-200.0, 200.0)},
+      {.name = "camera.pitch_error_rad", .range = Range::closed(-0.3, 0.3)},
       {.name = "ablation", .choices = {core::kAblationNames.begin(), core::kAblationNames.end()}},
   };
   return rules;

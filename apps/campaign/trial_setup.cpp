@@ -111,6 +111,7 @@ void apply_push(Drawer& draw, sim::Scenario& scenario) {
 
 void apply_plant(Drawer& draw, sim::PlantSetup& plant) {
   draw.apply("plant.mass_scale", plant.mass_scale);
+  draw.apply("plant.inertia_scale", plant.inertia_scale);
   draw.apply("plant.motor_strength", plant.motor_strength);
   draw.apply("plant.sensor_noise", plant.sensor_noise);
   if (draw.has("plant.latency_ms")) {
@@ -133,6 +134,10 @@ void apply_camera(Drawer& draw, sim::CameraSettings& camera) {
   draw.apply("camera.x_m", camera.x);
   draw.apply("camera.z_m", camera.z);
   draw.apply("camera.pitch_rad", camera.pitch);
+  draw.apply("camera.lost_pixels", camera.lost_pixels);
+  draw.apply("camera.lost_frames", camera.lost_frames);
+  if (draw.has("camera.time_error_ms")) camera.time_error = 1e-3 * draw("camera.time_error_ms");
+  draw.apply("camera.pitch_error_rad", camera.pitch_error);
 }
 
 /// Run seeds of different repetitions; below 2^53 so that every reader of JSON keeps them.

@@ -100,6 +100,21 @@ TEST(MujocoPlant, GroundCarriesTheWeightAtRest) {
   EXPECT_NEAR(force.y(), 0.0, 0.01 * weight);
 }
 
+TEST(MujocoPlant, LargerInertiasTurnSlowerInTheAir) {
+  const auto pitch_after_a_kick = [](const std::string& scale) {
+    MujocoPlant plant(quiet_options(
+        "start: {drop_m: 2.0}\nplant: {sensor_noise: 0, latency_ms: 0, " + scale + "}\n"));
+    core::JointCommand kick;
+    kick.mode = core::DriveMode::active;
+    for (const core::Leg leg : core::kAllLegs) kick.tau[core::leg_offset(leg) + 2] = 5.0;
+    run(plant, kick, 50);
+    return std::abs(pitch(plant.truth()));
+  };
+  const double nominal = pitch_after_a_kick("inertia_scale: 1.0");
+  EXPECT_GT(nominal, 0.02);
+  EXPECT_LT(pitch_after_a_kick("inertia_scale: 1.5"), 0.95 * nominal);
+}
+
 TEST(MujocoPlant, MomentsOfTheGroundPutThePressureUnderTheSole) {
   MujocoPlant plant(quiet_options(kPerfect));
   run(plant, hold(nominal_posture().q), 500);

@@ -20,7 +20,7 @@ constexpr const char* kFullFile = R"(name: rising-boxes
 robot: hector-sim
 friction: 0.7
 camera: {noise: none, width: 320, height: 240, rate_Hz: 15, latency_ms: 20, x_m: 0.1, z_m: 0.07,
-         pitch_rad: 0.5}
+         pitch_rad: 0.5, lost_pixels: 0.2, lost_frames: 0.1, time_error_ms: -30, pitch_error_rad: 0.02}
 slabs:
   - {x_m: [-1.0, 0.30], top_m: 0.0}
   - {x_m: [0.50, 0.95], top_m: 0.05, y_m: [-0.5, 0.7], slope_rad: 0.1, yaw_rad: 0.2, friction: 0.8}
@@ -31,7 +31,7 @@ surprises:
   - {slab: 1, top_m: 0.03}
   - {push: {phase: takeoff, after_s: 0.2, duration_s: 0.1, impulse_Ns: [4.0, 0.0, 1.0]}}
   - {push: {at_s: 1.5, duration_s: 0.05, impulse_Ns: [0.0, 3.0, 0.0]}}
-plant: {robot: hector-d14, mass_scale: 1.05, motor_strength: 0.9, latency_ms: 3.0,
+plant: {robot: hector-d14, mass_scale: 1.05, inertia_scale: 0.9, motor_strength: 0.9, latency_ms: 3.0,
         exchange_Hz: 500, sensor_noise: 0.5}
 )";
 
@@ -45,6 +45,10 @@ TEST(Scenario, EveryKeyReachesItsPlace) {
   EXPECT_DOUBLE_EQ(s.camera.rate, 15.0);
   EXPECT_DOUBLE_EQ(s.camera.latency, 0.02);
   EXPECT_DOUBLE_EQ(s.camera.pitch, 0.5);
+  EXPECT_DOUBLE_EQ(s.camera.lost_pixels, 0.2);
+  EXPECT_DOUBLE_EQ(s.camera.lost_frames, 0.1);
+  EXPECT_DOUBLE_EQ(s.camera.time_error, -0.03);
+  EXPECT_DOUBLE_EQ(s.camera.pitch_error, 0.02);
   ASSERT_EQ(s.seen.slabs.size(), 2U);
   EXPECT_TRUE(s.seen.slabs[1].centre.isApprox(Eigen::Vector2d(0.725, 0.1)));
   EXPECT_TRUE(s.seen.slabs[1].half_size.isApprox(Eigen::Vector2d(0.225, 0.6)));
@@ -60,6 +64,7 @@ TEST(Scenario, EveryKeyReachesItsPlace) {
   EXPECT_FALSE(s.goal.jumps);
   EXPECT_EQ(s.plant.robot, "hector-d14");
   EXPECT_DOUBLE_EQ(s.plant.mass_scale, 1.05);
+  EXPECT_DOUBLE_EQ(s.plant.inertia_scale, 0.9);
   EXPECT_DOUBLE_EQ(s.plant.motor_strength, 0.9);
   EXPECT_EQ(s.plant.latency_ticks, 3);
   EXPECT_EQ(s.plant.exchange_period, 2);

@@ -119,6 +119,41 @@ TEST(SimCamera, ShowsThePoseAtExposureNotAtDelivery) {
   EXPECT_GT(floor, 1000);
 }
 
+TEST(SimCamera, LosesItsShareOfFramesAndPixels) {
+  CameraSettings settings = small_camera(CameraNoise::none);
+  const auto valid = [](const core::DepthFrame& frame) {
+    return std::count_if(frame.depth.begin(), frame.depth.end(), [](float z) { return z > 0.0F; });
+  };
+  SimCamera whole(settings, hector(), wide_floor(), 1);
+  const std::vector<core::DepthFrame> all = run(whole, 10040);
+  settings.lost_frames = 0.3;
+  settings.lost_pixels = 0.4;
+  SimCamera faulty(settings, hector(), wide_floor(), 1);
+  const std::vector<core::DepthFrame> some = run(faulty, 10040);
+  EXPECT_NEAR(static_cast<double>(some.size()), 0.7 * static_cast<double>(all.size()), 30.0);
+  double share = 0.0;
+  for (const core::DepthFrame& frame : some) {
+    share += static_cast<double>(valid(frame)) / static_cast<double>(valid(all.front())) /
+             static_cast<double>(some.size());
+  }
+  EXPECT_NEAR(share, 0.6, 0.03);
+  EXPECT_NE(some[0].depth, some[1].depth);  // others in each frame
+}
+
+TEST(SimCamera, ErrorsOfTimeAndMountingAreNotTold) {
+  CameraSettings settings = small_camera(CameraNoise::none);
+  SimCamera right(settings, hector(), wide_floor(), 1);
+  settings.time_error = 0.03;
+  settings.pitch_error = 0.02;
+  SimCamera wrong(settings, hector(), wide_floor(), 1);
+  const core::DepthFrame told = run(right, 41).front();
+  const core::DepthFrame frame = run(wrong, 41).front();
+  EXPECT_EQ(frame.stamp.nanoseconds, told.stamp.nanoseconds + 30 * kTick);
+  EXPECT_TRUE(frame.X_BC.isApprox(told.X_BC));
+  const std::size_t middle = frame.depth.size() / 2 + 32;
+  EXPECT_LT(frame.depth[middle], told.depth[middle] - 0.003F);  // it looks further down
+}
+
 TEST(SimCamera, SeesItsOwnFeetWhenItLooksAtThem) {
   CameraSettings settings;
   settings.noise = CameraNoise::none;
