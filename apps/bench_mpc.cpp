@@ -1,10 +1,14 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <span>
 
 #include "apps/bench.hpp"
 #include "apps/lockstep_run.hpp"
+#include "apps/run_recorder.hpp"
 #include "apps/stopwatch.hpp"
 #include "apps/text_file.hpp"
 #include "control/wrench_qp_record.hpp"
@@ -98,8 +102,19 @@ nlohmann::ordered_json bench_mpc(const BenchSetup& setup, const std::filesystem:
 }
 
 nlohmann::ordered_json bench_tick(const BenchSetup& setup) {
-  LockstepRun run(level_ground_run(setup, Eyes::truth));
-  while (run.step({})) {
+  const RunRequest request = level_ground_run(setup, Eyes::truth);
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("hopscotch-bench-" + std::to_string(getpid()));
+  LockstepRun run(request);
+  std::vector<double> record_ms;
+  {
+    RunRecorder recorder(folder, 1, request, {});  // never finished: leaves nothing behind
+    while (run.step([&](const TickRecord& tick) {
+      const Stopwatch watch(TimeOf::thread);
+      recorder.record(tick);
+      record_ms.push_back(watch.milliseconds());
+    })) {
+    }
   }
   const LockstepRun::StageSamples& samples = run.samples();
   std::vector<double> tick_ms = samples.tick_ms;
@@ -107,6 +122,7 @@ nlohmann::ordered_json bench_tick(const BenchSetup& setup) {
   return {{"n", tick_ms.size()},
           {"tick_us", percentile_group(tick_ms, 1e3)},
           {"estimator_us", percentile_group(samples.estimator_ms, 1e3)},
+          {"record_us", percentile_group(std::move(record_ms), 1e3)},
           {"allocations", samples.allocations}};
 }
 
