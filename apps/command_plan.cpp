@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/commands.hpp"
+#include "apps/flight_trial.hpp"
 #include "apps/installation.hpp"
 #include "apps/plan_json.hpp"
 #include "apps/program_config.hpp"
@@ -14,6 +15,7 @@
 #include "apps/text_file.hpp"
 #include "core/config_reader.hpp"
 #include "planner/jump_planner.hpp"
+#include "planner/nearest_target.hpp"
 #include "planner/step_target.hpp"
 
 namespace hopscotch::apps {
@@ -29,6 +31,7 @@ struct PlanOptions {
   int repeat = 1;
   bool cold = false;
   bool json = false;
+  bool fly = false;
   std::filesystem::path config = config_directory() / "hopscotch.yaml";
   std::filesystem::path out;
 };
@@ -52,42 +55,102 @@ planner::PlanRequest request_of(const PlanOptions& options, const ProgramConfig&
                                 const model::RobotParameters& robot) {
   const std::optional<model::StandPose> pose = model::stand_pose(robot, config.stand_posture);
   if (!pose) throw core::ConfigError("model.stand_posture: " + robot.name + " cannot stand so");
-  planner::StepRequest step = options.step;
-  if (std::isnan(step.edge)) step.edge = planner::default_edge(step.distance, step.height);
   return {.start = planner::standing_state(*pose),
-          .target = planner::step_target(step, robot),
+          .target = planner::step_target(options.step, robot),
           .final_posture = config.stand_posture,
           .guess = options.cold ? planner::StartGuess::kinematic : planner::StartGuess::previous,
           .solver = options.solver == "ipopt" ? planner::Solver::ipopt : planner::Solver::chain};
 }
 
-ExitStatus plan(const PlanOptions& options) {
+void say_flown(const FlownJump& flown) {
+  const JumpResult& jump = flown.jump;
+  std::printf("flown: %s", std::string(jump_outcome_name(jump.outcome)).c_str());
+  if (!jump.reason.empty()) std::printf(" (%s)", jump.reason.c_str());
+  if (jump.outcome != JumpOutcome::fell) {
+    std::printf(", %.3f m ahead, %+.3f m aside, turned %+.3f rad; %.1f cm from the target",
+                jump.landing.distance, flown.lateral, flown.yaw, 100.0 * flown.landing_error);
+  }
+  std::printf("; peak torque %.2f, speed %.2f, power %.2f of the limits\n", jump.peak.torque_ratio,
+              jump.peak.speed_ratio, jump.peak.power_ratio);
+}
+
+void say_refused(const RefusedPlan& refused) {
+  std::fprintf(stderr, "hopscotch: no plan: %s\n", refused.refusal.text().c_str());
+  if (!refused.nearest) return;
+  const planner::StepRequest& step = refused.nearest->step;
+  std::fprintf(stderr,
+               "nearest feasible: %.3f m ahead, %+.3f m up, %+.3f m aside, turned %+.3f rad; "
+               "%s has margin %.3f\n",
+               step.distance, step.height, step.lateral, step.yaw,
+               std::string(refused.nearest->binding.name).c_str(), refused.nearest->binding.margin);
+}
+
+/// What `hopscotch plan` works with.
+struct PlanSession {
+  ProgramConfig config;
+  model::RobotParameters robot;
+  planner::JumpPlanner planner;
+  planner::PlanRequest request;
+  PlanContext context;
+
+  PlanSession(const PlanOptions& options, const ProgramConfig& tuning)
+      : config(tuning),
+        robot(model::RobotParameters::load(robot_file(options.robot))),
+        planner(config.planner, robot),
+        request(request_of(options, config, robot)),
+        context{options.model, options.solver, {}, options.repeat, {}} {}
+
+  core::Result<core::JumpPlan> solve() {
+    std::vector<double> solve_ms;
+    std::optional<core::Result<core::JumpPlan>> result;
+    for (int i = 0; i < context.solves; ++i) {
+      const Stopwatch watch(TimeOf::thread);
+      result = planner.plan(request);
+      solve_ms.push_back(watch.milliseconds());
+    }
+    context.solve_ms = Percentiles::of(solve_ms);
+    return std::move(*result);
+  }
+};
+
+ExitStatus refuse(PlanSession& session, const PlanOptions& options, const core::Refusal& refusal) {
+  RefusedPlan refused{options.step, refusal, session.planner.obstacle(),
+                      session.planner.iterations(), std::nullopt};
+  refused.nearest =
+      planner::nearest_target(session.planner, session.request, options.step, session.robot);
+  if (options.json) {
+    std::printf("%s", refused_plan_json(refused, session.context).c_str());
+  } else {
+    say_refused(refused);
+  }
+  return ExitStatus::answer_is_no;
+}
+
+ExitStatus plan(PlanOptions options) {
+  planner::StepRequest& step = options.step;
+  if (!std::isfinite(step.distance + step.height + step.lateral + step.yaw)) {
+    throw core::ConfigError(
+        "plan: --distance, --height, --lateral and --yaw must be finite numbers");
+  }
+  if (std::isnan(step.edge)) step.edge = planner::default_edge(step.distance, step.height);
   ProgramConfig config = ProgramConfig::load(options.config);
   if (!std::isnan(options.friction)) config.planner.friction = options.friction;
-  const model::RobotParameters robot = model::RobotParameters::load(robot_file(options.robot));
-  const planner::PlanRequest request = request_of(options, config, robot);
-  planner::JumpPlanner planner(config.planner, robot);
-  std::vector<double> solve_ms;
-  std::optional<core::Result<core::JumpPlan>> result;
-  for (int i = 0; i < options.repeat; ++i) {
-    const Stopwatch watch(TimeOf::thread);
-    result = planner.plan(request);
-    solve_ms.push_back(watch.milliseconds());
+  PlanSession session(options, config);
+  const core::Result<core::JumpPlan> result = session.solve();
+  if (!result) return refuse(session, options, result.error());
+  PlanContext& context = session.context;
+  if (options.fly) context.flown = fly({*result, step, session.config, session.robot});
+  if (!options.out.empty()) {
+    write_file_atomically(options.out, plan_trajectory_json(*result, context));
   }
-  if (!result->has_value()) {
-    std::fprintf(stderr, "hopscotch: no plan: %s\n", result->error().text().c_str());
-    return ExitStatus::answer_is_no;
-  }
-  const core::JumpPlan& jump = result->value();
-  const PlanContext context{options.model, options.solver, Percentiles::of(solve_ms),
-                            options.repeat};
-  if (!options.out.empty()) write_file_atomically(options.out, plan_trajectory_json(jump, context));
   if (options.json) {
-    std::printf("%s", plan_summary_json(jump, context).c_str());
+    std::printf("%s", plan_summary_json(*result, context).c_str());
   } else {
-    say_plan(jump, context);
+    say_plan(*result, context);
+    if (context.flown) say_flown(*context.flown);
   }
-  return ExitStatus::ok;
+  const bool no = context.flown && context.flown->jump.outcome != JumpOutcome::landed;
+  return no ? ExitStatus::answer_is_no : ExitStatus::ok;
 }
 
 }  // namespace
@@ -115,6 +178,8 @@ void add_plan_command(CLI::App& app, Action& action) {
   command->add_option("--repeat", options->repeat, "Solve so often")->check(CLI::Range(1, 10000));
   command->add_flag("--cold", options->cold, "Each solve from the closed-form first guess");
   command->add_option("--config", options->config, "Tuning")->capture_default_str();
+  command->add_flag("--fly", options->fly,
+                    "Fly it in MuJoCo, on the true state, and say how it went");
   command->add_option("--out", options->out, "Write the trajectory (JSON)");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([&action, options] { action = [options] { return plan(*options); }; });

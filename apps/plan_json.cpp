@@ -1,9 +1,11 @@
 #include "apps/plan_json.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core/landing_target.hpp"
+#include "planner/lift_to_3d.hpp"
 
 namespace hopscotch::apps {
 
@@ -25,19 +27,60 @@ const core::JumpKnot& first_flight_knot(const core::JumpPlan& plan) {
   return plan.knots[0];
 }
 
+/// Places and angles that may be unknown.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json solver_json(const PlanContext& context, std::string_view status) {
+  return {{"schema", "hopscotch.plan/1"},
+          {"status", status},
+          {"model", context.model},
+          {"solver", context.solver},
+          {"solve_ms",
+           {{"p50", context.solve_ms.p50},
+            {"p99", context.solve_ms.p99},
+            {"max", context.solve_ms.max},
+            {"n", context.solves}}}};
+}
+
+Json flown_json(const FlownJump& flown) {
+  const JumpResult& jump = flown.jump;
+  return {{"outcome", jump_outcome_name(jump.outcome)},
+          {"reason", jump.reason},
+          {"landing",
+           {{"distance_m", number(jump.landing.distance)},
+            {"lateral_m", number(flown.lateral)},
+            {"height_m", number(jump.landing.height)},
+            {"yaw_rad", number(flown.yaw)}}},
+          {"landing_error_m", number(flown.landing_error)},
+          {"flight_s", number(jump.flight)},
+          {"takeoff",
+           {{"speed_x_mps", number(jump.takeoff.speed_x)},
+            {"speed_z_mps", number(jump.takeoff.speed_z)}}},
+          {"peak",
+           {{"torque_ratio", number(jump.peak.torque_ratio)},
+            {"speed_ratio", number(jump.peak.speed_ratio)},
+            {"power_ratio", number(jump.peak.power_ratio)},
+            {"normal_force_N", number(jump.peak.normal_force)}}}};
+}
+
+Json step_json(const planner::StepRequest& step) {
+  return {{"distance_m", number(step.distance)},
+          {"height_m", number(step.height)},
+          {"edge_m", number(step.edge)},
+          {"lateral_m", number(step.lateral)},
+          {"yaw_rad", number(step.yaw)}};
+}
+
 Json summary(const core::JumpPlan& plan, const PlanContext& context) {
   const core::JumpKnot& liftoff = first_flight_knot(plan);
-  Json json;
-  json["schema"] = "hopscotch.plan/1";
-  json["status"] = core::plan_status_name(plan.status);
+  Json json = solver_json(context, core::plan_status_name(plan.status));
+  const planner::SideTarget side = planner::side_target(plan.target);
   json["distance_m"] = plan.target.distance;
   json["height_m"] = plan.target.height;
-  json["model"] = context.model;
-  json["solver"] = context.solver;
-  json["solve_ms"] = {{"p50", context.solve_ms.p50},
-                      {"p99", context.solve_ms.p99},
-                      {"max", context.solve_ms.max},
-                      {"n", context.solves}};
+  json["lateral_m"] = side.lateral;
+  json["yaw_rad"] = side.yaw;
   json["iterations"] = plan.iterations;
   json["duration_s"] = plan.duration;
   json["flight_s"] = plan.touchdown_time - plan.liftoff_time;
@@ -54,6 +97,9 @@ Json summary(const core::JumpPlan& plan, const PlanContext& context) {
   }
   json["max_violation"] = plan.certificate.max_violation;
   json["dense_max_violation"] = plan.certificate.dense_max_violation;
+  const core::CertificateEntry& binding = plan.certificate.binding();
+  json["binding"] = {{"name", binding.name}, {"margin", binding.margin}};
+  if (context.flown) json["flown"] = flown_json(*context.flown);
   return json;
 }
 
@@ -78,6 +124,25 @@ Json knot_json(const core::JumpKnot& knot) {
 
 std::string plan_summary_json(const core::JumpPlan& plan, const PlanContext& context) {
   return summary(plan, context).dump(2) + "\n";
+}
+
+std::string refused_plan_json(const RefusedPlan& refused, const PlanContext& context) {
+  const bool malformed = refused.refusal.reason == core::Reason::target_malformed ||
+                         refused.refusal.reason == core::Reason::bad_sensor_value;
+  Json json =
+      solver_json(context, core::plan_status_name(malformed ? core::PlanStatus::bad_input
+                                                            : core::PlanStatus::infeasible));
+  json.update(step_json(refused.step));
+  json["reason"] = refused.refusal.text();
+  json["iterations"] = refused.iterations;
+  json["binding"] = refused.obstacle.empty() ? Json() : Json{{"name", refused.obstacle}};
+  json["nearest_feasible"] = Json();
+  if (refused.nearest) {
+    const core::CertificateEntry& binding = refused.nearest->binding;
+    json["nearest_feasible"] = step_json(refused.nearest->step);
+    json["nearest_feasible"]["binding"] = {{"name", binding.name}, {"margin", binding.margin}};
+  }
+  return json.dump(2) + "\n";
 }
 
 std::string plan_trajectory_json(const core::JumpPlan& plan, const PlanContext& context) {

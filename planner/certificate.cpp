@@ -12,6 +12,8 @@ namespace hopscotch::planner {
 
 namespace {
 
+using model::LinkArray;
+
 constexpr double kGrid = 1e-3;              // [s]
 constexpr double kFlightEnds = 0.2;         // share of the flight near the ground at either end
 constexpr double kTerrainScale = 0.1;       // [m]
@@ -192,14 +194,42 @@ class Examiner {
   core::PlanPeaks peaks_{0.0, 0.0, 0.0, 0.0};
 };
 
-/// The motion at time and state of `now` when the joints give these torques.
-PlanarInstant with_torque(const PlanarModel& model, const PlanarMotion& motion, PlanarKnot now,
-                          const model::PlanarJoints<double>& tau) {
-  now.acceleration = now.phase == core::JumpPhase::flight
-                         ? flight_acceleration(model.dynamics, now.links, tau)
-                         : stance_acceleration(model.dynamics, now.links, tau);
-  return instant(model, motion, now, 0.0);
-}
+/// A step with torques that are held.
+struct HeldStep {
+  const model::PlanarDynamics& dynamics;
+  core::JumpPhase phase;
+  model::PlanarJoints<double> tau;
+
+  [[nodiscard]] LinkArray<double> acceleration(const LinkState& links) const {
+    return phase == core::JumpPhase::flight ? flight_acceleration(dynamics, links, tau)
+                                            : stance_acceleration(dynamics, links, tau);
+  }
+  /// Mean acceleration over the first `h` by Heun's rule.
+  [[nodiscard]] LinkArray<double> first_mean(const LinkState& links, const LinkArray<double>& now,
+                                             double h) const {
+    return mean(now, acceleration(advanced(links, now, h)), 0.5);
+  }
+  /// The rule of Adams and Bashforth with two points.
+  [[nodiscard]] static LinkArray<double> next_mean(const LinkArray<double>& now,
+                                                   const LinkArray<double>& before) {
+    return mean(now, before, -0.5);
+  }
+  [[nodiscard]] static LinkState advanced(LinkState links, const LinkArray<double>& u, double h) {
+    for (std::size_t j = 0; j < model::kPlanarLinks; ++j) {
+      links.pitch[j] += h * (links.rate[j] + 0.5 * h * u[j]);
+      links.rate[j] += h * u[j];
+    }
+    return links;
+  }
+
+ private:
+  static LinkArray<double> mean(const LinkArray<double>& a, const LinkArray<double>& b,
+                                double share) {
+    LinkArray<double> out;
+    for (std::size_t j = 0; j < out.size(); ++j) out[j] = (1.0 - share) * a[j] + share * b[j];
+    return out;
+  }
+};
 
 double largest_speed(const model::RobotParameters& robot) {
   double speed = 0.0;
@@ -219,15 +249,21 @@ double mismatch(const LinkState& reached, const LinkState& planned, double speed
 
 void examine_step(const PlanarModel& model, const PlanarMotion& motion, const PlanarKnot& knot,
                   Examiner& examiner) {
-  const model::PlanarJoints<double> tau = instant(model, motion, knot, 0.5 * knot.dt).tau;
+  const HeldStep step{model.dynamics, knot.phase, instant(model, motion, knot, 0.5 * knot.dt).tau};
   const int samples = std::max(1, static_cast<int>(std::ceil(knot.dt / kGrid)));
+  const double h = knot.dt / samples;
   PlanarKnot now = knot;
+  now.correction = {};
+  LinkArray<double> before{};
   for (int i = 0; i <= samples; ++i) {
-    now.time = knot.time + knot.dt * i / samples;
-    examiner.examine(with_torque(model, motion, now, tau), now.time);
-    if (i < samples) {
-      now.links = integrate(model.dynamics, knot.phase, now.links, tau, knot.dt / samples);
-    }
+    now.time = knot.time + h * i;
+    now.acceleration = step.acceleration(now.links);
+    examiner.examine(instant(model, motion, now, 0.0), now.time);
+    if (i == samples) break;
+    const LinkArray<double> mean = i == 0 ? step.first_mean(now.links, now.acceleration, h)
+                                          : HeldStep::next_mean(now.acceleration, before);
+    now.links = HeldStep::advanced(now.links, mean, h);
+    before = now.acceleration;
   }
   const LinkState planned = instant(model, motion, knot, knot.dt).links;
   examiner.note_violation(mismatch(now.links, planned, largest_speed(model.robot)));

@@ -184,6 +184,33 @@ void ChainProblem::write_bounds() {
   }
 }
 
+namespace {
+
+template <int Dof>
+void set_correction(const StepCorrection& correction, StepPlace<Dof>& place) {
+  const auto turn = coordinates_from_links(correction.turn);
+  const auto acceleration = coordinates_from_links(correction.acceleration);
+  std::copy_n(turn.begin(), place.turn.size(), place.turn.begin());
+  std::copy_n(acceleration.begin(), place.acceleration.size(), place.acceleration.begin());
+}
+
+}  // namespace
+
+/// Bounds never cross: a row keeps at least a tenth of its range.
+void ChainProblem::correct(const ChainCorrection& correction) {
+  auto step = correction.steps.begin();
+  for (StepPlace<kStanceDof>& place : takeoff_places_) set_correction(*step++, place);
+  for (StepPlace<kFlightDof>& place : flight_places_) set_correction(*step++, place);
+  for (StepPlace<kStanceDof>& place : landing_places_) set_correction(*step++, place);
+  write_bounds();
+  for (int i = 0; i < layout_.row_slots(); ++i) {
+    const double range = upper_(i) - lower_(i);
+    const double by = std::min(correction.tightening(i), 0.45 * range);
+    lower_(i) += by;
+    upper_(i) -= by;
+  }
+}
+
 double ChainProblem::values(const Eigen::VectorXd& x, Eigen::VectorXd& slots,
                             Eigen::VectorXd& equalities) const {
   const StepCounts& steps = layout_.steps();

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "planner/chain_correction.hpp"
 #include "planner/chain_knots.hpp"
 #include "planner/chain_layout.hpp"
 #include "planner/chain_place.hpp"
@@ -45,6 +46,9 @@ class ChainProblem {
   static constexpr double kCostScale = 0.1;
 
   ChainProblem(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout);
+
+  /// Solves are from now on for the problem with this correction; it replaces an earlier one.
+  void correct(const ChainCorrection& correction);
 
   [[nodiscard]] const ChainLayout& layout() const { return layout_; }
   /// Bounds of the slots; +-kUnbounded where there is none.

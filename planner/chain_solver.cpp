@@ -10,9 +10,6 @@ namespace {
 // Start.
 constexpr double kPush = 0.2;  // of slacks into their bounds, as a share of the range
 constexpr double kBarrierStart = 0.1;
-constexpr double kWarmPush = 1e-3;
-constexpr double kWarmBarrier = 1e-3;
-constexpr double kWarmSpread = 1e2;
 // Barrier.
 constexpr double kBarrierFactor = 0.2;
 constexpr double kBarrierPower = 1.5;
@@ -77,12 +74,28 @@ ChainOutcome ChainSolver::solve(const ChainProblem& problem, const Eigen::Vector
   return iterate(problem, options);
 }
 
-ChainOutcome ChainSolver::solve_again(const ChainProblem& problem, const SolveOptions& options) {
+/// How close to the last solution a solve begins.
+struct ChainSolver::Warmth {
+  double push = 0.0;     ///< Of slacks into their bounds.
+  double barrier = 0.0;  ///< First.
+  double spread = 0.0;   ///< Of slack times multiplier about it.
+};
+
+ChainOutcome ChainSolver::restart(const ChainProblem& problem, const SolveOptions& options,
+                                  const Warmth& warmth) {
   slots_.set_bounds(problem.lower(), problem.upper());
-  start_from(problem, kWarmPush);
-  slots_.restart(values_, kWarmPush, kWarmBarrier, kWarmSpread);
-  barrier_ = kWarmBarrier;
+  start_from(problem, warmth.push);
+  slots_.restart(values_, warmth.push, warmth.barrier, warmth.spread);
+  barrier_ = warmth.barrier;
   return iterate(problem, options);
+}
+
+ChainOutcome ChainSolver::solve_again(const ChainProblem& problem, const SolveOptions& options) {
+  return restart(problem, options, {.push = 1e-3, .barrier = 1e-3, .spread = 1e2});
+}
+
+ChainOutcome ChainSolver::polish(const ChainProblem& problem, const SolveOptions& options) {
+  return restart(problem, options, {.push = 1e-6, .barrier = 1e-5, .spread = 1e4});
 }
 
 /// Moves the point inside of its own bounds and evaluates it.
@@ -95,6 +108,20 @@ void ChainSolver::start_from(const ChainProblem& problem, double push) {
   filter_size_ = 0;
   regularisation_ = 0.0;
   stalls_ = 0;
+}
+
+int ChainSolver::tightest_slot() const {
+  const int flight_time = layout_.variable(layout_.decision().flight_step());
+  const int landing_time = layout_.variable(layout_.decision().landing_step());
+  int tightest = 0;
+  double most = 0.0;
+  for (int i = 0; i < layout_.slots(); ++i) {
+    const double resistance = std::abs(slots_.multiplier()(i));
+    if (i == flight_time || i == landing_time || resistance <= most) continue;
+    most = resistance;
+    tightest = i;
+  }
+  return tightest;
 }
 
 void ChainSolver::update_residuals() {

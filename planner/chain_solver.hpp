@@ -31,11 +31,16 @@ class ChainSolver {
                      const SolveOptions& options);
   /// From the point and multipliers of the last solve, which may have been for another target.
   ChainOutcome solve_again(const ChainProblem& problem, const SolveOptions& options);
+  /// The same where the problem has hardly changed since.
+  ChainOutcome polish(const ChainProblem& problem, const SolveOptions& options);
 
   /// Decision vector of the last solve.
   [[nodiscard]] auto x() const { return point_.head(layout_.variables()); }
   /// Multipliers of the last solve, in the order of ChainLayout.
   [[nodiscard]] const Eigen::VectorXd& slot_multipliers() const { return slots_.multiplier(); }
+  /// The inequality with the largest multiplier at the end of the last solve: what resists most.
+  /// Step lengths apart: the slowest landing is always the cheapest.
+  [[nodiscard]] int tightest_slot() const;
   [[nodiscard]] const Eigen::VectorXd& equality_multipliers() const { return equality_dual_; }
 
  private:
@@ -46,6 +51,9 @@ class ChainSolver {
   struct Search;
 
   ChainOutcome iterate(const ChainProblem& problem, const SolveOptions& options);
+  struct Warmth;
+  ChainOutcome restart(const ChainProblem& problem, const SolveOptions& options,
+                       const Warmth& warmth);
   void start_from(const ChainProblem& problem, double push);
   void update_residuals();
   [[nodiscard]] double stationarity(const ChainProblem& problem);

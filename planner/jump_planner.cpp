@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "planner/certificate.hpp"
+#include "planner/chain_correction.hpp"
 #include "planner/chain_solver.hpp"
 #include "planner/ipopt_problem.hpp"
 #include "planner/landing_phase.hpp"
+#include "planner/leg_certificate.hpp"
 #include "planner/lift_to_3d.hpp"
 #include "planner/planar_task.hpp"
+#include "planner/slot_names.hpp"
 #include "planner/warm_start.hpp"
 
 namespace hopscotch::planner {
@@ -28,6 +32,31 @@ constexpr double kMarginTolerance = 1e-3;
 /// Joint motion re-integrated with the held torques may miss by so much, see `certify`.
 constexpr double kDenseViolationMax = 0.10;
 
+// Deferred correction of a solution.
+constexpr int kPolishPasses = 3;
+constexpr int kPolishIterationsMax = 15;
+/// Dynamics between the knots and limits beyond it are good: an aim that leaves room below the
+/// tolerance of the certificate.
+constexpr double kDefectWanted = 7e-4;
+
+/// A jump to the side or with a turn loads one leg more, slides it sideways and reaches further
+/// with it: it uses so much less of each reserve, and the certificate judges each leg.
+constexpr double kSideShare = 0.94;
+
+PlannerConfig with_room_for_one_leg(PlannerConfig config) {
+  for (double* share : {&config.reserves.torque, &config.reserves.speed, &config.reserves.friction,
+                        &config.reserves.power}) {
+    *share *= kSideShare;
+  }
+  return config;
+}
+
+/// A solution and its motion.
+struct SolvedMotion {
+  SolveOutcome outcome;
+  PlanarMotion motion;
+};
+
 NonlinearProgram build_program(const PlanarModel& model, const PlanarTask& task,
                                const DecisionLayout& layout) {
   BlockList blocks;
@@ -37,15 +66,16 @@ NonlinearProgram build_program(const PlanarModel& model, const PlanarTask& task,
   return {layout.size(), std::move(blocks)};
 }
 
-Refusal infeasible(const SolveOutcome& outcome, const PlanarTask& task) {
-  char text[160];
+Refusal infeasible(const SolveOutcome& outcome, const PlanarTask& task, std::string_view limit) {
+  char text[200];
   std::snprintf(text, sizeof text,
                 "no motion found to %.3f m, height %.3f m: %s after %d iterations, largest "
                 "violation %.2g",
                 task.distance, task.height,
                 outcome.status == SolveStatus::iteration_limit ? "stopped" : "gave up",
                 outcome.iterations, outcome.violation);
-  return {Reason::plan_infeasible, text};
+  const std::string by = limit.empty() ? "" : "; stopped by " + std::string(limit);
+  return {Reason::plan_infeasible, text + by};
 }
 
 Refusal not_certified(const core::Certificate& certificate) {
@@ -58,6 +88,30 @@ Refusal not_certified(const core::Certificate& certificate) {
   return {Reason::certificate_refused, text};
 }
 
+bool is_certified(const core::Certificate& certificate) {
+  return certificate.binding().margin >= -kMarginTolerance &&
+         certificate.dense_max_violation <= kDenseViolationMax;
+}
+
+/// Fills certificate, peaks and knots of a plan whose target is set. @return why it is refused.
+std::optional<Refusal> certify_and_lift(const PlanarModel& model, const PlanarTask& task,
+                                        const SolvedMotion& solved, core::JumpPlan& plan) {
+  const PlanarMotion& motion = solved.motion;
+  const CertifiedMotion certified = certify(model, task, motion);
+  plan.certificate = certified.certificate;
+  plan.certificate.max_violation = solved.outcome.violation;
+  plan.peaks = certified.peaks;
+  if (!is_certified(plan.certificate)) return not_certified(plan.certificate);
+  if (!lift_to_3d(model, motion, plan.target, plan)) {
+    return Refusal{Reason::out_of_reach, "a leg cannot reach so far to the side"};
+  }
+  if (!side_target(plan.target).is_straight()) {
+    certify_legs(model.robot, model.config.friction, plan);
+  }
+  if (!is_certified(plan.certificate)) return not_certified(plan.certificate);
+  return std::nullopt;
+}
+
 bool acceptable(const SolveOutcome& outcome) {
   return (outcome.status == SolveStatus::solved ||
           outcome.status == SolveStatus::iteration_limit) &&
@@ -67,28 +121,40 @@ bool acceptable(const SolveOutcome& outcome) {
 }  // namespace
 
 struct JumpPlanner::Memory {
-  PlanarModel model;
+  PlanarModel straight;  ///< For jumps ahead.
+  PlanarModel sideways;  ///< For the others: what one leg may use more than the other is kept.
   DecisionLayout layout;
   ChainSolver chain;
   bool chain_is_solved = false;  ///< The chain solver holds a certified jump with its multipliers.
   Eigen::VectorXd previous;      ///< The last certified jump; empty before the first.
+  std::string_view obstacle;     ///< Limit that the last refusal is about.
+  int iterations = 0;            ///< Of the last solve.
 
   Memory(const model::RobotParameters& robot, const PlannerConfig& config)
-      : model(robot, config), layout(config.steps), chain(layout) {}
+      : straight(robot, config),
+        sideways(robot, with_room_for_one_leg(config)),
+        layout(config.steps),
+        chain(layout) {}
 
-  [[nodiscard]] SolveOutcome solve(const PlanarTask& task, Solver solver, StartGuess guess);
+  [[nodiscard]] SolvedMotion solve(const PlanarModel& model, const PlanarTask& task,
+                                   const PlanRequest& request, StartGuess guess);
+  void refine(const PlanarModel& model, const PlanarTask& task, ChainProblem& problem,
+              SolvedMotion& best);
 };
 
-SolveOutcome JumpPlanner::Memory::solve(const PlanarTask& task, Solver solver, StartGuess guess) {
+SolvedMotion JumpPlanner::Memory::solve(const PlanarModel& model, const PlanarTask& task,
+                                        const PlanRequest& request, StartGuess guess) {
   const bool warm = guess == StartGuess::previous;
   const SolveOptions options{model.config.iterations_max, model.config.tolerance};
-  if (solver == Solver::ipopt) {
+  obstacle = {};
+  if (request.solver == Solver::ipopt) {
     const StartPoint start{warm ? previous : kinematic_guess(model, task, layout)};
-    return solve_with_ipopt(build_program(model, task, layout),
-                            decision_bounds(model, task, layout), decision_sizes(layout), start,
-                            options);
+    const SolveOutcome solved =
+        solve_with_ipopt(build_program(model, task, layout), decision_bounds(model, task, layout),
+                         decision_sizes(layout), start, options);
+    return {solved, motion_from_decision(model, task, layout, solved.x)};
   }
-  const ChainProblem problem(model, task, layout);
+  ChainProblem problem(model, task, layout);
   ChainOutcome solved;
   if (warm && chain_is_solved) {
     solved = chain.solve_again(problem, options);
@@ -96,7 +162,36 @@ SolveOutcome JumpPlanner::Memory::solve(const PlanarTask& task, Solver solver, S
     solved = chain.solve(problem, warm ? previous : kinematic_guess(model, task, layout), options);
   }
   chain_is_solved = false;
-  return {solved.status, solved.iterations, solved.violation, solved.cost, chain.x()};
+  obstacle = slot_name(problem.layout(), chain.tightest_slot());
+  SolvedMotion out{{solved.status, solved.iterations, solved.violation, solved.cost, chain.x()},
+                   motion_from_decision(model, task, layout, chain.x())};
+  if (acceptable(out.outcome)) refine(model, task, problem, out);
+  return out;
+}
+
+/// Deferred correction: solves again with what the motion misses between its knots, and keeps the
+/// motion that misses least.
+void JumpPlanner::Memory::refine(const PlanarModel& model, const PlanarTask& task,
+                                 ChainProblem& problem, SolvedMotion& best) {
+  const SolveOptions options{kPolishIterationsMax, model.config.tolerance};
+  ChainCorrection correction(problem.layout());
+  PlanarMotion motion = best.motion;
+  double least = add_correction(model, motion, problem.layout(), correction).worst();
+  for (int pass = 0; pass < kPolishPasses && least > kDefectWanted; ++pass) {
+    problem.correct(correction);
+    const ChainOutcome solved = chain.polish(problem, options);
+    best.outcome.iterations += solved.iterations;
+    if (solved.status != SolveStatus::solved) return;
+    motion = motion_from_decision(model, task, layout, chain.x());
+    set_correction(correction, motion);
+    const double defect = add_correction(model, motion, problem.layout(), correction).worst();
+    if (defect >= least) return;
+    least = defect;
+    best.motion = motion;
+    best.outcome.violation = solved.violation;
+    best.outcome.cost = solved.cost;
+    best.outcome.x = chain.x();
+  }
 }
 
 JumpPlanner::JumpPlanner(const PlannerConfig& config, const model::RobotParameters& robot)
@@ -109,30 +204,32 @@ JumpPlanner::JumpPlanner(const PlannerConfig& config, const model::RobotParamete
   }
 }
 
+std::string_view JumpPlanner::obstacle() const {
+  return memory_->obstacle;
+}
+
+int JumpPlanner::iterations() const {
+  return memory_->iterations;
+}
+
 JumpPlanner::~JumpPlanner() = default;
 JumpPlanner::JumpPlanner(JumpPlanner&&) noexcept = default;
 JumpPlanner& JumpPlanner::operator=(JumpPlanner&&) noexcept = default;
 
 core::Result<core::JumpPlan> JumpPlanner::plan(const PlanRequest& request) {
-  const PlanarModel& model = memory_->model;
-  const DecisionLayout& layout = memory_->layout;
+  const bool straight = side_target(request.target).is_straight();
+  const PlanarModel& model = straight ? memory_->straight : memory_->sideways;
+  memory_->obstacle = {};
+  memory_->iterations = 0;
   const core::Result<PlanarTask> task = planar_task(model, request);
   if (!task) return task.error();
 
   const bool warm = request.guess == StartGuess::previous && memory_->previous.size() > 0;
-  const SolveOutcome outcome =
-      memory_->solve(*task, request.solver, warm ? StartGuess::previous : StartGuess::kinematic);
-  if (!acceptable(outcome)) return infeasible(outcome, *task);
-
-  const PlanarMotion motion = motion_from_decision(model, *task, layout, outcome.x);
-  CertifiedMotion certified = certify(model, *task, motion);
-  certified.certificate.max_violation = outcome.violation;
-  if (certified.certificate.binding().margin < -kMarginTolerance ||
-      certified.certificate.dense_max_violation > kDenseViolationMax) {
-    return not_certified(certified.certificate);
-  }
-  memory_->previous = outcome.x;
-  memory_->chain_is_solved = request.solver == Solver::chain;
+  const SolvedMotion solved =
+      memory_->solve(model, *task, request, warm ? StartGuess::previous : StartGuess::kinematic);
+  const SolveOutcome& outcome = solved.outcome;
+  memory_->iterations = outcome.iterations;
+  if (!acceptable(outcome)) return infeasible(outcome, *task, memory_->obstacle);
 
   core::JumpPlan plan;
   plan.id = request.id;
@@ -142,9 +239,12 @@ core::Result<core::JumpPlan> JumpPlanner::plan(const PlanRequest& request) {
                                                       : core::PlanStatus::iteration_limit;
   plan.iterations = outcome.iterations;
   plan.warm = warm;
-  plan.certificate = certified.certificate;
-  plan.peaks = certified.peaks;
-  lift_to_3d(model, motion, request.target, plan);
+  if (std::optional<Refusal> refusal = certify_and_lift(model, *task, solved, plan)) {
+    memory_->obstacle = plan.certificate.binding().name;
+    return *refusal;
+  }
+  memory_->previous = outcome.x;
+  memory_->chain_is_solved = request.solver == Solver::chain;
   return plan;
 }
 

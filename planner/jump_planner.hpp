@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 #include "core/jump_plan.hpp"
 #include "core/landing_target.hpp"
@@ -52,6 +53,12 @@ class JumpPlanner {
   ///         bad_sensor_value (start not finite), plan_infeasible (with iterations and violation),
   ///         certificate_refused (with the binding limit). `iterations` counts the solver's.
   core::Result<core::JumpPlan> plan(const PlanRequest& request);
+
+  /// The limit that stood in the way of the last refused request, in the words of the certificate;
+  /// empty if that was malformed, or after a solve by Ipopt that found no motion.
+  [[nodiscard]] std::string_view obstacle() const;
+  /// Iterations of the last solve.
+  [[nodiscard]] int iterations() const;
 
  private:
   struct Memory;

@@ -1,96 +1,89 @@
 #include "planner/lift_to_3d.hpp"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "core/check.hpp"
+#include "planner/side_lift.hpp"
+#include "planner/straight_knot.hpp"
 
 namespace hopscotch::planner {
 
 namespace {
 
-using model::PlanarVector;
+/// A target less beside the line or turned less is straight ahead: rounding [m], [rad].
+constexpr double kStraight = 1e-6;
 
-/// Both legs alike, zero yaw and roll.
-core::JointVector both_legs(const model::PlanarJoints<double>& joints, double share) {
-  core::JointVector out = core::JointVector::Zero();
-  for (const core::Leg leg : core::kAllLegs) {
-    out(core::joint_index(leg, core::Joint::hip_pitch)) = share * joints.hip;
-    out(core::joint_index(leg, core::Joint::knee)) = share * joints.knee;
-    out(core::joint_index(leg, core::Joint::ankle)) = share * joints.ankle;
+/// The trunk's turn in flight changes the momentum of the legs' swing a little.
+constexpr int kMomentumPasses = 3;
+
+/// Turns a knot from S into W.
+void turn_into_world(const core::LandingTarget& target, core::JumpKnot& knot) {
+  const Eigen::Matrix3d R_WS =
+      Eigen::AngleAxisd(target.heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  for (Eigen::Vector3d* point : {&knot.p_WB, &knot.p_WG}) *point = target.p_WS + R_WS * *point;
+  for (Eigen::Vector3d* vector : {&knot.v_WB, &knot.w_WB, &knot.v_WG}) *vector = R_WS * *vector;
+  knot.rpy.z() += target.heading;
+  for (core::Wrench& wrench : knot.wrenches) {
+    wrench.force = R_WS * wrench.force;
+    wrench.moment = R_WS * wrench.moment;
   }
-  return out;
 }
 
-/// Turns vectors and points of the plane into W.
-struct Plane {
-  Eigen::Vector3d origin;
-  Eigen::Matrix3d R_WS;
-
-  Plane(const Eigen::Vector3d& p_WS, double heading)
-      : origin(p_WS),
-        R_WS(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()).toRotationMatrix()) {}
-  [[nodiscard]] Eigen::Vector3d vector(const PlanarVector<double>& v) const {
-    return R_WS * Eigen::Vector3d(v.x, 0.0, v.z);
-  }
-  [[nodiscard]] Eigen::Vector3d point(const PlanarVector<double>& p) const {
-    return origin + vector(p);
-  }
-  /// A rate or moment about +y of S.
-  [[nodiscard]] Eigen::Vector3d about(double size) const { return R_WS.col(1) * size; }
-};
-
-PlanarVector<double> sum(const PlanarVector<double>& a, const PlanarVector<double>& b) {
-  return {a.x + b.x, a.z + b.z};
-}
-
-/// Half of the ground's wrench, moved from the ankle axis to the sole centre.
-core::Wrench foot_wrench(const PlanarModel& model, const PlanarInstant& now, const Plane& plane) {
-  constexpr double kShare = 1.0 / core::kLegs;
-  const double moment = now.moment + model.dynamics.chain().sole_height * now.force.x +
-                        model.robot.sole_centre() * now.force.z;
-  return {kShare * plane.vector(now.force), kShare * plane.about(moment)};
-}
-
-core::JumpKnot lift_knot(const PlanarModel& model, const PlanarMotion& motion,
-                         const PlanarKnot& from, double heading, const Plane& plane) {
-  constexpr double kShare = 1.0 / core::kLegs;
-  const PlanarInstant now = instant(model, motion, from, 0.0);
+core::JumpKnot lift_straight(const PlanarModel& model, const PlanarMotion& motion,
+                             const PlanarKnot& from) {
   const PlanarInstant middle = instant(model, motion, from, 0.5 * from.dt);
-  const model::LinkArray<double>& a = now.links.pitch;
-  const model::LinkArray<double>& w = now.links.rate;
-  core::JumpKnot knot;
-  knot.time = from.time;
-  knot.dt = from.dt;
-  knot.phase = from.phase;
-  knot.contact.fill(from.phase != core::JumpPhase::flight);
-  knot.p_WB = plane.point(sum(now.ankle, model.dynamics.trunk_origin(a)));
-  knot.v_WB = plane.vector(sum(now.ankle_velocity, model.dynamics.trunk_origin_velocity(a, w)));
-  knot.p_WG = plane.point(sum(now.ankle, model.dynamics.com(a)));
-  knot.v_WG = plane.vector(sum(now.ankle_velocity, model.dynamics.com_velocity(a, w)));
-  knot.rpy = {0.0, a[model::kTrunk], heading};
-  knot.w_WB = plane.about(w[model::kTrunk]);
-  knot.q = both_legs(model::joints_from_links(a), 1.0);
-  knot.dq = both_legs(model::joints_from_links(w), 1.0);
-  knot.tau = both_legs(middle.tau, kShare);
-  if (from.phase != core::JumpPhase::flight) {
-    knot.wrenches.fill(foot_wrench(model, middle, plane));
-  }
+  core::JumpKnot knot = straight_knot(model, instant(model, motion, from, 0.0));
+  knot.tau = straight_torques(middle);
+  if (from.phase != core::JumpPhase::flight) knot.wrenches.fill(straight_wrench(model, middle));
   return knot;
 }
 
 }  // namespace
 
-void lift_to_3d(const PlanarModel& model, const PlanarMotion& motion,
+bool SideTarget::is_straight() const {
+  return std::abs(lateral) < kStraight && std::abs(yaw) < kStraight;
+}
+
+SideTarget side_target(const core::LandingTarget& target) {
+  const Eigen::Isometry3d X_SW = (Eigen::Translation3d(target.p_WS) *
+                                  Eigen::AngleAxisd(target.heading, Eigen::Vector3d::UnitZ()))
+                                     .inverse();
+  const Eigen::Isometry3d left = X_SW * target.X_WF[0];
+  const Eigen::Isometry3d right = X_SW * target.X_WF[1];
+  return {0.5 * (left.translation().y() + right.translation().y()),
+          std::atan2(left.linear()(1, 0), left.linear()(0, 0))};
+}
+
+bool lift_to_3d(const PlanarModel& model, const PlanarMotion& motion,
                 const core::LandingTarget& target, core::JumpPlan& plan) {
   HOPSCOTCH_CHECK(motion.knots.size() <= core::JumpPlan::kMaxKnots);
-  const Plane plane(target.p_WS, target.heading);
+  const SideTarget side = side_target(target);
+  const bool straight = side.is_straight();
+  SideStep step(model, motion, side.lateral, side.yaw);
+  const SideLift lift(model, motion, step);
+  for (int pass = 0; pass < kMomentumPasses && !straight; ++pass) {
+    const std::vector<double> momentum = lift.flight_momentum();
+    if (momentum.empty()) return false;
+    step.account_for(momentum);
+  }
   plan.knot_count = motion.knots.size();
   for (std::size_t i = 0; i < motion.knots.size(); ++i) {
-    plan.knots[i] = lift_knot(model, motion, motion.knots[i], target.heading, plane);
+    const PlanarKnot& from = motion.knots[i];
+    core::JumpKnot& knot = plan.knots[i];
+    if (straight) {
+      knot = lift_straight(model, motion, from);
+    } else if (!lift.lift(from, knot)) {
+      return false;
+    }
+    knot.time = from.time;
+    knot.dt = from.dt;
+    turn_into_world(target, knot);
   }
   plan.liftoff_time = motion.liftoff_time;
   plan.touchdown_time = motion.touchdown_time;
   plan.duration = motion.knots.back().time;
+  return true;
 }
 
 }  // namespace hopscotch::planner

@@ -87,10 +87,14 @@ PlanarInstant instant(const PlanarModel& model, const PlanarMotion& motion, cons
                       double elapsed) {
   PlanarInstant now;
   now.phase = knot.phase;
+  const double s = knot.dt > 0.0 ? elapsed / knot.dt : 0.0;
+  LinkArray<double> acceleration = knot.acceleration;
   for (std::size_t j = 0; j < model::kPlanarLinks; ++j) {
     const double u = knot.acceleration[j];
-    now.links.pitch[j] = knot.links.pitch[j] + elapsed * (knot.links.rate[j] + 0.5 * elapsed * u);
+    now.links.pitch[j] = knot.links.pitch[j] + elapsed * (knot.links.rate[j] + 0.5 * elapsed * u) +
+                         s * s * (3.0 - 2.0 * s) * knot.correction.turn[j];
     now.links.rate[j] = knot.links.rate[j] + elapsed * u;
+    acceleration[j] += knot.correction.acceleration[j];
   }
   const model::PlanarDynamics& dynamics = model.dynamics;
   const LinkState& links = now.links;
@@ -102,12 +106,12 @@ PlanarInstant instant(const PlanarModel& model, const PlanarMotion& motion, cons
     now.ankle = {motion.liftoff_com.x + v.x * t - com.x,
                  motion.liftoff_com.z + v.z * t - 0.5 * model::kGravity * t * t - com.z};
     now.ankle_velocity = {v.x - velocity.x, v.z - model::kGravity * t - velocity.z};
-    now.tau = dynamics.flight_torques(links.pitch, links.rate, knot.acceleration);
+    now.tau = dynamics.flight_torques(links.pitch, links.rate, acceleration);
     return now;
   }
   now.ankle = knot.phase == core::JumpPhase::takeoff ? motion.start_ankle : motion.target_ankle;
   const model::StanceLoads<double> loads =
-      dynamics.stance_loads(links.pitch, links.rate, knot.acceleration);
+      dynamics.stance_loads(links.pitch, links.rate, acceleration);
   now.tau = loads.tau;
   now.force = loads.force;
   now.moment = loads.moment;

@@ -40,14 +40,22 @@ struct PlanarModel {
   [[nodiscard]] double ankle_x() const { return -robot.sole_centre(); }
 };
 
+/// What the planner adds to a step so that its torques, held over the step, really make it (see
+/// ChainCorrection). Links of absolute pitch.
+struct StepCorrection {
+  model::LinkArray<double> turn{};          ///< Pitch at the end beyond the trapezoid [rad].
+  model::LinkArray<double> acceleration{};  ///< That torques are computed for, more [rad/s^2].
+};
+
 /// A knot of the planar motion and the step that follows it, in which the angular accelerations of
-/// the links are constant.
+/// the links are constant but for the correction.
 struct PlanarKnot {
   core::JumpPhase phase = core::JumpPhase::takeoff;
   double time = 0.0;  ///< Since the start [s].
   double dt = 0.0;    ///< Length of the step; 0 at the last knot [s].
   LinkState links;    ///< At the knot; at touchdown after the ground has stopped the foot.
   model::LinkArray<double> acceleration{};  ///< During the step [rad/s^2].
+  StepCorrection correction;
 };
 
 /// Everything about the motion at one instant. Two legs together, frame S.

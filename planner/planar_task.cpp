@@ -7,6 +7,7 @@
 #include <string>
 
 #include "model/kinematics.hpp"
+#include "planner/lift_to_3d.hpp"
 
 namespace hopscotch::planner {
 
@@ -67,19 +68,12 @@ std::optional<Refusal> check_target(const PlannerConfig& config,
                             "|height| <= %.1f",
                             target.distance, target.height, kDistanceMax, kHeightMax)};
   }
-  const Eigen::Isometry3d X_SW = (Eigen::Translation3d(target.p_WS) *
-                                  Eigen::AngleAxisd(target.heading, Eigen::Vector3d::UnitZ()))
-                                     .inverse();
-  const Eigen::Isometry3d left = X_SW * target.X_WF[0];
-  const Eigen::Isometry3d right = X_SW * target.X_WF[1];
-  const double lateral = 0.5 * (left.translation().y() + right.translation().y());
-  const double yaw = std::atan2(left.linear()(1, 0), left.linear()(0, 0));
-  if (!(std::abs(lateral) <= config.lateral_tolerance) ||
-      !(std::abs(yaw) <= config.yaw_tolerance)) {
+  const SideTarget side = side_target(target);
+  if (!(std::abs(side.lateral) <= config.lateral_max) || !(std::abs(side.yaw) <= config.yaw_max)) {
     return Refusal{Reason::target_malformed,
                    sentence("target is %.3f m beside the jump line and turned by %.3f rad; at most "
                             "%.3f m and %.3f rad",
-                            lateral, yaw, config.lateral_tolerance, config.yaw_tolerance)};
+                            side.lateral, side.yaw, config.lateral_max, config.yaw_max)};
   }
   return std::nullopt;
 }

@@ -112,8 +112,8 @@ PlannerConfig PlannerConfig::load(const ConfigReader& section) {
   config.smoothness_cost = cost.number("smoothness", Range::not_negative());
   cost.finish();
   const ConfigReader target = section.section("target");
-  config.lateral_tolerance = target.number("lateral_tolerance_m", Range::not_negative());
-  config.yaw_tolerance = target.number("yaw_tolerance_rad", Range::not_negative());
+  config.lateral_max = target.number("lateral_max_m", Range::not_negative());
+  config.yaw_max = target.number("yaw_max_rad", Range::not_negative());
   target.finish();
   const ConfigReader solver = section.section("solver");
   config.iterations_max = solver.integer("iterations_max", 1, 1000);

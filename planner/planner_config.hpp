@@ -56,10 +56,10 @@ struct PlannerConfig {
   CostWeights takeoff_cost;
   CostWeights flight_cost;
   CostWeights landing_cost;
-  double rate_jump_cost = 0.0;     ///< On the jump of link rates at touchdown^2 [s^2/rad^2].
-  double smoothness_cost = 0.0;    ///< On the change of angular acceleration between steps^2.
-  double lateral_tolerance = 0.0;  ///< Targets farther beside the jump line are refused [m].
-  double yaw_tolerance = 0.0;      ///< Targets turned more are refused [rad].
+  double rate_jump_cost = 0.0;   ///< On the jump of link rates at touchdown^2 [s^2/rad^2].
+  double smoothness_cost = 0.0;  ///< On the change of angular acceleration between steps^2.
+  double lateral_max = 0.0;      ///< Targets farther beside the jump line are refused [m].
+  double yaw_max = 0.0;          ///< Targets turned more are refused [rad].
   int iterations_max = 0;
   double tolerance = 0.0;  ///< Of the scaled optimality conditions.
 

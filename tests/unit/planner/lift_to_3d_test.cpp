@@ -25,6 +25,11 @@ core::LandingTarget target(double heading) {
   core::LandingTarget target;
   target.p_WS = plan_origin();
   target.heading = heading;
+  for (Eigen::Isometry3d& X_WF : target.X_WF) {
+    X_WF = Eigen::Translation3d(plan_origin()) *
+           Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()) *
+           Eigen::Translation3d(0.4, 0.0, 0.0);
+  }
   return target;
 }
 
@@ -32,7 +37,7 @@ const core::JumpPlan& lifted() {
   static const core::JumpPlan plan = [] {
     core::JumpPlan out;
     const SolvedJump& jump = level_jump();
-    lift_to_3d(jump.model, jump.motion, target(kHeading), out);
+    EXPECT_TRUE(lift_to_3d(jump.model, jump.motion, target(kHeading), out));
     return out;
   }();
   return plan;
@@ -124,7 +129,7 @@ TEST(LiftTo3d, FeetInFlightGetNoForce) {
 
 TEST(LiftTo3d, HeadingOnlyTurnsThePlan) {
   core::JumpPlan straight;
-  lift_to_3d(level_jump().model, level_jump().motion, target(0.0), straight);
+  ASSERT_TRUE(lift_to_3d(level_jump().model, level_jump().motion, target(0.0), straight));
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(kHeading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   for (std::size_t i = 0; i < straight.knot_count; ++i) {
