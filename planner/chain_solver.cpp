@@ -8,12 +8,15 @@ namespace hopscotch::planner {
 namespace {
 
 // Start.
-constexpr double kPush = 0.2;  // of slacks into their bounds, as a share of the range
+constexpr double kPush = 0.3;        // of slacks into their bounds, as a share of the range
+constexpr double kSecondPush = 0.4;  // of a second attempt
 constexpr double kBarrierStart = 0.1;
+/// A first attempt that ends further from feasible is not worth a second one.
+constexpr double kSecondViolationMax = 0.05;
 // Barrier.
-constexpr double kBarrierFactor = 0.2;
+constexpr double kBarrierFactor = 0.1;
 constexpr double kBarrierPower = 1.5;
-constexpr double kBarrierShare = 10.0;       // error below which a barrier problem counts as solved
+constexpr double kBarrierShare = 30.0;       // error below which a barrier problem counts as solved
 constexpr double kBarrierEnd = 0.01;         // last barrier as a share of the tolerance
 constexpr double kComplementarityEnd = 5.0;  // times the last barrier, at the solution
 constexpr double kKeepMin = 0.99;            // fraction to the boundary
@@ -65,10 +68,19 @@ ChainSolver::ChainSolver(const DecisionLayout& layout)
 
 ChainOutcome ChainSolver::solve(const ChainProblem& problem, const Eigen::VectorXd& start,
                                 const SolveOptions& options) {
+  const ChainOutcome first = solve_from(problem, start, kPush, options);
+  if (first.status == SolveStatus::solved || first.violation > kSecondViolationMax) return first;
+  ChainOutcome second = solve_from(problem, start, kSecondPush, options);
+  second.iterations += first.iterations;
+  return second;
+}
+
+ChainOutcome ChainSolver::solve_from(const ChainProblem& problem, const Eigen::VectorXd& start,
+                                     double push, const SolveOptions& options) {
   point_.head(layout_.variables()) = start;
   slots_.set_bounds(problem.lower(), problem.upper());
-  start_from(problem, kPush);
-  slots_.start(values_, kPush, kBarrierStart);
+  start_from(problem, push);
+  slots_.start(values_, push, kBarrierStart);
   equality_dual_.setZero();
   barrier_ = kBarrierStart;
   return iterate(problem, options);
@@ -91,7 +103,7 @@ ChainOutcome ChainSolver::restart(const ChainProblem& problem, const SolveOption
 }
 
 ChainOutcome ChainSolver::solve_again(const ChainProblem& problem, const SolveOptions& options) {
-  return restart(problem, options, {.push = 1e-3, .barrier = 1e-3, .spread = 1e2});
+  return restart(problem, options, {.push = 1e-2, .barrier = 1e-3, .spread = 1e2});
 }
 
 ChainOutcome ChainSolver::polish(const ChainProblem& problem, const SolveOptions& options) {

@@ -26,7 +26,8 @@ class ChainSolver {
  public:
   explicit ChainSolver(const DecisionLayout& layout);
 
-  /// From a decision vector, e.g. `kinematic_guess`.
+  /// From a decision vector, e.g. `kinematic_guess`. Where that nearly succeeds, once more with
+  /// slacks further from their bounds; `iterations` counts both.
   ChainOutcome solve(const ChainProblem& problem, const Eigen::VectorXd& start,
                      const SolveOptions& options);
   /// From the point and multipliers of the last solve, which may have been for another target.
@@ -51,6 +52,8 @@ class ChainSolver {
   struct Search;
 
   ChainOutcome iterate(const ChainProblem& problem, const SolveOptions& options);
+  ChainOutcome solve_from(const ChainProblem& problem, const Eigen::VectorXd& start, double push,
+                          const SolveOptions& options);
   struct Warmth;
   ChainOutcome restart(const ChainProblem& problem, const SolveOptions& options,
                        const Warmth& warmth);

@@ -27,18 +27,54 @@ Eigen::Vector<double, N> forces(const model::PlanarDynamics& dynamics, const Lin
   }
 }
 
+/// Accelerations enter `forces` by this matrix: inertia forces of the links, summed up from the
+/// trunk down as the joints feel them, and rotors. Written out, since this is most of the time of a
+/// certificate.
+template <int N>
+Eigen::Matrix<double, N, N> inertia_of(const model::PlanarDynamics& dynamics,
+                                       const LinkArray<double>& a) {
+  constexpr std::size_t kFirst = model::kPlanarLinks - static_cast<std::size_t>(N);
+  const model::PlanarDynamics::Coupling& coupling = N == 3 ? dynamics.pinned() : dynamics.free();
+  Eigen::Matrix<double, N, N> link;  // rows and columns by link
+  for (std::size_t j = kFirst; j < model::kPlanarLinks; ++j) {
+    const auto row = static_cast<Eigen::Index>(j - kFirst);
+    link(row, row) = coupling.real[j][j];
+    for (std::size_t k = j + 1; k < model::kPlanarLinks; ++k) {
+      const auto column = static_cast<Eigen::Index>(k - kFirst);
+      const double angle = a[j] - a[k];
+      link(row, column) = link(column, row) =
+          coupling.real[j][k] * std::cos(angle) - coupling.imaginary[j][k] * std::sin(angle);
+    }
+  }
+  constexpr auto kColumn = [](std::size_t of) { return static_cast<Eigen::Index>(of - kFirst); };
+  constexpr Eigen::Index kTrunkAt = kColumn(model::kTrunk);
+  constexpr Eigen::Index kThighAt = kColumn(model::kThigh);
+  constexpr Eigen::Index kShankAt = kColumn(model::kShank);
+  const model::PlanarChain& chain = dynamics.chain();
+  Eigen::Matrix<double, N, N> joint;  // rows: hip, knee, ankle and, in flight, momentum
+  joint.row(0) = -link.row(kTrunkAt);
+  joint.row(1) = joint.row(0) - link.row(kThighAt);
+  joint.row(2) = joint.row(1) - link.row(kShankAt);
+  if constexpr (N == 4) joint.row(3) = link.colwise().sum();
+  joint(0, kThighAt) += chain.armature_hip;
+  joint(0, kTrunkAt) -= chain.armature_hip;
+  joint(1, kShankAt) += chain.armature_knee;
+  joint(1, kThighAt) -= chain.armature_knee + chain.armature_ankle;
+  joint(2, kThighAt) -= chain.armature_ankle;
+  if constexpr (N == 4) {
+    joint(1, kColumn(model::kFoot)) += chain.armature_ankle;
+    joint(2, kColumn(model::kFoot)) += chain.armature_ankle;
+  }
+  return joint;
+}
+
 template <int N>
 LinkArray<double> solve(const model::PlanarDynamics& dynamics, const LinkState& links,
                         const Eigen::Vector<double, N>& wanted) {
   constexpr std::size_t kFirst = model::kPlanarLinks - static_cast<std::size_t>(N);
   const Eigen::Vector<double, N> bias = forces<N>(dynamics, links, LinkArray<double>{});
-  Eigen::Matrix<double, N, N> inertia;
-  for (int j = 0; j < N; ++j) {
-    LinkArray<double> unit{};
-    unit[kFirst + static_cast<std::size_t>(j)] = 1.0;
-    inertia.col(j) = forces<N>(dynamics, links, unit) - bias;
-  }
-  const Eigen::Vector<double, N> found = inertia.partialPivLu().solve(wanted - bias);
+  const Eigen::Matrix<double, N, N> inverse = inertia_of<N>(dynamics, links.pitch).inverse();
+  const Eigen::Vector<double, N> found = inverse * (wanted - bias);
   LinkArray<double> acceleration{};
   for (int j = 0; j < N; ++j) acceleration[kFirst + static_cast<std::size_t>(j)] = found(j);
   return acceleration;
