@@ -74,13 +74,16 @@ planner::PlanRequest request_for(const BenchSetup& setup, const BenchTarget& tar
 
 struct PlannerSamples {
   std::vector<double> plan_ms;
+  std::vector<double> dense_violation;  ///< Of the plans that were certified.
   int planned = 0;
 
   void plan(planner::JumpPlanner& planner, const planner::PlanRequest& request) {
     const Stopwatch watch(TimeOf::thread);
     const core::Result<core::JumpPlan> result = planner.plan(request);
     plan_ms.push_back(watch.milliseconds());
-    if (result) ++planned;
+    if (!result) return;
+    ++planned;
+    dense_violation.push_back(result->certificate.dense_max_violation);
   }
 };
 
@@ -171,6 +174,7 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
           {"ipopt_ms", percentile_group(ipopt.plan_ms, 1.0)},
           {"success", iterations.solved / count},
           {"certified", cold.planned / count},
+          {"dense_violation", percentile_group(cold.dense_violation, 1.0)},
           {"warm_success", warm.planned / std::max(1.0, static_cast<double>(warm.plan_ms.size()))},
           {"targets", targets.size()},
           {"shares", iterations.shares()}};

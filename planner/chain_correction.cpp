@@ -13,8 +13,9 @@ namespace {
 
 using model::LinkArray;
 
-/// Kept from the physical limits, in row units: what lies between the places that are looked at.
-constexpr double kMargin = 3e-3;
+/// Kept from a physical limit that was broken, in row units: what lies between the places that are
+/// looked at, and a light foot, whose friction is a small number of newtons.
+constexpr double kMargin = 1e-2;
 /// Longest step of the integration; its error is far below what is looked for [s].
 constexpr double kStepMax = 4e-3;
 constexpr double kRateScale = 21.0;  // of the errors of rates [rad/s]
@@ -150,7 +151,7 @@ MotionDefect add_correction(const PlanarModel& model, const PlanarMotion& motion
     for (int r = 0; r < rows; ++r) {
       const double missing = excess[static_cast<std::size_t>(r)];
       correction.tightening(first + r) += missing;
-      defect.limits = std::max(defect.limits, missing);
+      defect.limits = std::max(defect.limits, missing - kMargin);
     }
   }
   return defect;

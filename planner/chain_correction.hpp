@@ -22,7 +22,7 @@ struct ChainCorrection {
 /// The largest of what a motion misses.
 struct MotionDefect {
   double dynamics = 0.0;  ///< Pitch [rad] or rate [of the largest motor speed] at a step's end.
-  double limits = 0.0;    ///< Of a physical limit, in row units, with a small margin.
+  double limits = 0.0;    ///< Beyond a physical limit, in row units.
 
   [[nodiscard]] double worst() const { return std::max(dynamics, limits); }
 };

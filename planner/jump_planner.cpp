@@ -30,11 +30,12 @@ constexpr double kViolationMax = 5e-3;
 /// A margin below zero by less is rounding of the solver.
 constexpr double kMarginTolerance = 1e-3;
 /// Joint motion re-integrated with the held torques may miss by so much, see `certify`.
-constexpr double kDenseViolationMax = 0.10;
+constexpr double kDenseViolationMax = 0.02;
 
 // Deferred correction of a solution.
-constexpr int kPolishPasses = 3;
-constexpr int kPolishIterationsMax = 15;
+constexpr int kPolishIterations = 60;     // in all
+constexpr int kPolishIterationsMax = 25;  // of one pass
+constexpr double kPolishViolationMax = 1e-3;
 /// Dynamics between the knots and limits beyond it are good: an aim that leaves room below the
 /// tolerance of the certificate.
 constexpr double kDefectWanted = 7e-4;
@@ -173,25 +174,27 @@ SolvedMotion JumpPlanner::Memory::solve(const PlanarModel& model, const PlanarTa
 /// motion that misses least.
 void JumpPlanner::Memory::refine(const PlanarModel& model, const PlanarTask& task,
                                  ChainProblem& problem, SolvedMotion& best) {
-  const SolveOptions options{kPolishIterationsMax, model.config.tolerance};
   ChainCorrection correction(problem.layout());
   PlanarMotion motion = best.motion;
   double least = add_correction(model, motion, problem.layout(), correction).worst();
-  for (int pass = 0; pass < kPolishPasses && least > kDefectWanted; ++pass) {
+  double defect = least;
+  int left = kPolishIterations;
+  while (left > 0 && defect > kDefectWanted) {
     problem.correct(correction);
+    const SolveOptions options{std::min(left, kPolishIterationsMax), model.config.tolerance};
     const ChainOutcome solved = chain.polish(problem, options);
-    best.outcome.iterations += solved.iterations;
-    if (solved.status != SolveStatus::solved) return;
+    left -= std::max(1, solved.iterations);
     motion = motion_from_decision(model, task, layout, chain.x());
     set_correction(correction, motion);
-    const double defect = add_correction(model, motion, problem.layout(), correction).worst();
-    if (defect >= least) return;
+    defect = add_correction(model, motion, problem.layout(), correction).worst();
+    if (defect >= least || solved.violation > kPolishViolationMax) continue;
     least = defect;
     best.motion = motion;
     best.outcome.violation = solved.violation;
     best.outcome.cost = solved.cost;
     best.outcome.x = chain.x();
   }
+  best.outcome.iterations += kPolishIterations - left;
 }
 
 JumpPlanner::JumpPlanner(const PlannerConfig& config, const model::RobotParameters& robot)
