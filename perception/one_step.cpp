@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/kinematics.hpp"
+#include "perception/edge_lines.hpp"
 #include "perception/step_features.hpp"
 #include "perception/track_slices.hpp"
 
@@ -88,7 +89,9 @@ core::OneStepTerrain one_step_terrain(const OneStepConfig& config, const core::T
   terrain.p_WS = stance.p_WS;
   terrain.heading = stance.heading;
   terrain.profile = profile_of(slices);
-  list_features(config, slices, find_treads(config, slices), terrain);
+  DividedLine line{.treads = find_treads(config, slices), .breaks = {}};
+  line.breaks = find_breaks(map, stance, line.treads);
+  static_cast<void>(list_features(config, slices, line, terrain));
   terrain.coverage = coverage_ahead(slices);
   return terrain;
 }

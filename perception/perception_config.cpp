@@ -76,6 +76,7 @@ PerceptionConfig PerceptionConfig::load(const ConfigReader& section) {
   config.filter = DepthFilterConfig::load(section.section("depth_filter"));
   config.mapper = MapperConfig::load(section.section("mapper"));
   config.one_step = OneStepConfig::load(section.section("one_step"));
+  config.planes = PlaneConfig::load(section.section("planes"));
   section.finish();
   return config;
 }

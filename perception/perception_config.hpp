@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/config_reader.hpp"
+#include "perception/plane_segmentation.hpp"
 
 namespace hopscotch::perception {
 
@@ -73,6 +74,7 @@ struct PerceptionConfig {
   DepthFilterConfig filter;
   MapperConfig mapper;
   OneStepConfig one_step;
+  PlaneConfig planes;
 
   /// @throws core::ConfigError naming the key, its value and the violated rule.
   static PerceptionConfig load(const core::ConfigReader& section);

@@ -42,6 +42,24 @@ void PointBins::fill(const PlacedDepth& image, const core::TerrainMap& map,
   sort_by_cell(map.cells.size());
 }
 
+void PointBins::fill(std::span<const Eigen::Vector3f> points, const core::TerrainMap& map) {
+  entries_.clear();
+  sight_lines_.clear();
+  const RelativeGrid grid = relative_grid(map, Eigen::Vector3d::Zero());
+  for (const Eigen::Vector3f& p : points) {
+    const float grid_x = (p.x() - grid.x) * grid.cells_per_metre;
+    const float grid_y = (p.y() - grid.y) * grid.cells_per_metre;
+    if (!(grid_x >= 0.0F && grid_x < static_cast<float>(map.size_x))) continue;
+    if (!(grid_y >= 0.0F && grid_y < static_cast<float>(map.size_y))) continue;
+    const int ix = static_cast<int>(grid_x);
+    const int iy = static_cast<int>(grid_y);
+    entries_.push_back(
+        {static_cast<std::uint32_t>(iy * map.size_x + ix),
+         {p.z(), grid_x - static_cast<float>(ix) - 0.5F, grid_y - static_cast<float>(iy) - 0.5F}});
+  }
+  sort_by_cell(map.cells.size());
+}
+
 void PointBins::project(const PlacedDepth& image, const core::TerrainMap& map,
                         const BinningLimits& limits) {
   const int columns = image.intrinsics.width;

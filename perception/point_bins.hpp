@@ -54,6 +54,9 @@ class PointBins {
   /// Projects the image onto the grid of `map` (its cells are not read).
   void fill(const PlacedDepth& image, const core::TerrainMap& map, const BinningLimits& limits);
 
+  /// Sorts points of W [m] into the grid of `map`; NaN is left out. Leaves no sight lines.
+  void fill(std::span<const Eigen::Vector3f> points, const core::TerrainMap& map);
+
   [[nodiscard]] std::size_t size() const { return cells_.size(); }
   /// Index into TerrainMap::cells. @pre bin < size()
   [[nodiscard]] std::size_t cell(std::size_t bin) const { return cells_[bin]; }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.hpp"
+
 namespace hopscotch::perception {
 
 namespace {
@@ -63,6 +65,15 @@ std::vector<Run> level_runs(const OneStepConfig& config, const std::vector<Slice
   return runs;
 }
 
+/// Variance of a height averaged over the end of a tread, as far as it counts for a step: what all
+/// frames share lifts both sides of a step alike, and a cell's own error averages out over the end.
+double end_variance(const std::vector<Slice>& slices, const Run& run) {
+  constexpr double kShare = 0.04;
+  double sum = 0.0;
+  for (std::size_t i = run.first; i <= run.last; ++i) sum += slices[i].variance;
+  return kShare * sum / static_cast<double>(run.last - run.first + 1);
+}
+
 double mean_height(const std::vector<Slice>& slices, std::size_t first, std::size_t last) {
   double sum = 0.0;
   for (std::size_t i = first; i <= last; ++i) sum += slices[i].mean;
@@ -74,7 +85,8 @@ Tread tread_of(const std::vector<Slice>& slices, const Run& run) {
   return {.start = slices[run.first].x - 0.5 * kSliceStep,
           .end = slices[run.last].x + 0.5 * kSliceStep,
           .start_height = mean_height(slices, run.first, run.first + length - 1),
-          .end_height = mean_height(slices, run.last + 1 - length, run.last)};
+          .end_height = mean_height(slices, run.last + 1 - length, run.last),
+          .variance = end_variance(slices, run)};
 }
 
 bool contains_blind(const std::vector<Slice>& slices, const Tread& before, const Tread& behind) {
@@ -95,6 +107,7 @@ std::vector<Tread> joined(const OneStepConfig& config, const std::vector<Slice>&
       if (short_hole && std::abs(tread.start_height - before.end_height) < config.step_min) {
         before.end = tread.end;
         before.end_height = tread.end_height;
+        before.variance = std::max(before.variance, tread.variance);
         continue;
       }
     }
@@ -122,18 +135,32 @@ void add_gap(core::OneStepTerrain& terrain, const core::TerrainGap& gap) {
   if (terrain.gap_count < terrain.gaps.size()) terrain.gaps[terrain.gap_count++] = gap;
 }
 
-void list_between(const OneStepConfig& config, const Tread& before, const Tread& behind,
-                  core::OneStepTerrain& terrain) {
-  const double sigma = config.edge_sigma;
-  const double step = behind.start_height - before.end_height;
-  if (behind.start - before.end >= config.gap_min) {
-    add_edge(terrain, {before.end, sigma, step, EdgeKind::gap_near});
-    add_edge(terrain, {behind.start, sigma, step, EdgeKind::gap_far});
-    add_gap(terrain, {before.end, behind.start, std::sqrt(2.0) * sigma});
-  } else if (step >= config.step_min) {
-    add_edge(terrain, {0.5 * (before.end + behind.start), sigma, step, EdgeKind::up});
-  } else if (step <= -config.step_min) {
-    add_edge(terrain, {before.end, sigma, step, EdgeKind::down});
+/// A break as it is reported.
+struct Break {
+  const Tread& before;
+  const Tread& behind;
+  double end;    ///< Of support before, in S [m].
+  double start;  ///< Of support behind, in S [m].
+  double sigma;  ///< Of either place [m].
+};
+
+void list_break(const OneStepConfig& config, const Break& found, core::OneStepTerrain& terrain) {
+  core::TerrainEdge edge;
+  edge.sigma = found.sigma;
+  edge.step = found.behind.start_height - found.before.end_height;
+  const auto add = [&](double x, EdgeKind kind) {
+    edge.x = x;
+    edge.kind = kind;
+    add_edge(terrain, edge);
+  };
+  if (found.start - found.end >= config.gap_min) {
+    add(found.end, EdgeKind::gap_near);
+    add(found.start, EdgeKind::gap_far);
+    add_gap(terrain, {found.end, found.start, std::sqrt(2.0) * edge.sigma});
+  } else if (edge.step >= config.step_min) {
+    add(found.start, EdgeKind::up);  // the riser's top
+  } else if (edge.step <= -config.step_min) {
+    add(found.end, EdgeKind::down);
   }
 }
 
@@ -163,16 +190,31 @@ std::vector<Tread> find_treads(const OneStepConfig& config, const std::vector<Sl
   return joined(config, slices, kept);
 }
 
-void list_features(const OneStepConfig& config, const std::vector<Slice>& slices,
-                   const std::vector<Tread>& treads, core::OneStepTerrain& terrain) {
+std::vector<double> list_features(const OneStepConfig& config, const std::vector<Slice>& slices,
+                                  const DividedLine& line, core::OneStepTerrain& terrain) {
+  const std::vector<Tread>& treads = line.treads;
+  HOPSCOTCH_CHECK(line.breaks.size() == treads.size());
+  std::vector<double> step_sigmas;
   for (std::size_t i = 0; i + 1 < treads.size(); ++i) {
-    list_between(config, treads[i], treads[i + 1], terrain);
+    const TreadBreak& here = line.breaks[i];
+    list_break(config,
+               {.before = treads[i],
+                .behind = treads[i + 1],
+                .end = here.end ? here.end->x : treads[i].end,
+                .start = here.start ? here.start->x : treads[i + 1].start,
+                .sigma = config.edge_sigma},
+               terrain);
+    step_sigmas.resize(terrain.edge_count, std::sqrt(treads[i].variance + treads[i + 1].variance));
   }
-  if (treads.empty()) return;
-  const double end = treads.back().end;
-  if (bare_length(slices, end) >= config.gap_min) {
-    add_edge(terrain, {end, config.edge_sigma, core::kNaN, EdgeKind::gap_near});
+  if (treads.empty()) return step_sigmas;
+  const std::optional<EdgeLine>& last = line.breaks.back().end;
+  if (bare_length(slices, treads.back().end) >= config.gap_min) {
+    add_edge(terrain, {.x = last ? last->x : treads.back().end,
+                       .sigma = config.edge_sigma,
+                       .kind = EdgeKind::gap_near});
   }
+  step_sigmas.resize(terrain.edge_count, core::kNaN);
+  return step_sigmas;
 }
 
 }  // namespace hopscotch::perception

@@ -11,7 +11,6 @@ namespace {
 using core::CellState;
 
 constexpr double kLateralStep = 0.01;  // finer than a cell, so that none within a track is left out
-constexpr int kSliceCount = (core::TerrainProfile::kSamples - 1) * kSlicesPerSample + 1;
 /// A lone wrong cell at either end of the sorted heights does not break a slice.
 constexpr std::size_t kOutliers = 1;
 
@@ -35,6 +34,7 @@ std::vector<double> track_lines(const StancePose& stance) {
 
 struct Crossing {
   std::vector<double> heights;  // of observed cells, relative to S
+  double variance_sum = 0.0;    // of observed cells
   double upper_observed = -std::numeric_limits<double>::infinity();
   double upper_hidden = -std::numeric_limits<double>::infinity();
   std::size_t unseen = 0;
@@ -55,6 +55,7 @@ Crossing cross(const core::TerrainMap& map, const StancePose& stance, double x,
     const double upper = cell->upper - stance.p_WS.z();
     if (cell->state == CellState::observed) {
       crossing.heights.push_back(cell->height - stance.p_WS.z());
+      crossing.variance_sum += static_cast<double>(cell->variance);
       crossing.upper_observed = std::max(crossing.upper_observed, upper);
     } else {
       crossing.upper_hidden = std::max(crossing.upper_hidden, upper);
@@ -79,6 +80,7 @@ Slice judge(const OneStepConfig& config, double x, std::size_t lines, Crossing& 
   for (const double height : heights) sum += height;
   slice.lower = heights.front();
   slice.mean = sum / static_cast<double>(heights.size());
+  slice.variance = crossing.variance_sum / static_cast<double>(heights.size());
   // A ray that passed high over a single hidden cell must not lift a slice of observed ground.
   slice.upper = crossing.upper_observed;
   const std::size_t drop = heights.size() > 4 * kOutliers ? kOutliers : 0;
@@ -90,8 +92,10 @@ Slice judge(const OneStepConfig& config, double x, std::size_t lines, Crossing& 
 /// Turns the strip that no camera pose could see, between the soles and the first visible ground
 /// of the same height, into `blind`: nothing is known to stick out there, nothing is known to bear.
 void mark_blind_strip(const OneStepConfig& config, std::vector<Slice>& slices) {
-  const std::size_t origin = static_cast<std::size_t>(
-      std::lround(-core::TerrainProfile::kStart / kSliceStep));  // slice at x = 0
+  const auto at_feet = std::find_if(slices.begin(), slices.end(),
+                                    [](const Slice& slice) { return slice.x > -0.5 * kSliceStep; });
+  if (at_feet == slices.end()) return;
+  const std::size_t origin = static_cast<std::size_t>(at_feet - slices.begin());
   std::size_t before = origin;
   while (before + 1 < slices.size() && slices[before + 1].kind == SliceKind::level) ++before;
   if (slices[before].kind != SliceKind::level) return;
@@ -118,12 +122,12 @@ void mark_blind_strip(const OneStepConfig& config, std::vector<Slice>& slices) {
 }  // namespace
 
 std::vector<Slice> cut_slices(const OneStepConfig& config, const core::TerrainMap& map,
-                              const StancePose& stance) {
+                              const StancePose& stance, const SliceRange& range) {
   const std::vector<double> lines = track_lines(stance);
   std::vector<Slice> slices;
-  slices.reserve(kSliceCount);
-  for (int i = 0; i < kSliceCount; ++i) {
-    const double x = core::TerrainProfile::kStart + i * kSliceStep;
+  slices.reserve(static_cast<std::size_t>(range.count));
+  for (int i = 0; i < range.count; ++i) {
+    const double x = range.start + i * kSliceStep;
     Crossing crossing = cross(map, stance, x, lines);
     slices.push_back(judge(config, x, lines.size(), crossing));
   }

@@ -25,15 +25,23 @@ struct Slice {
   double lower = core::kNaN;  ///< [m]
   double mean = core::kNaN;   ///< [m]
   double upper = core::kNaN;  ///< [m]; infinity when unseen.
+  double variance = 0.0;      ///< Of a single cell's height [m^2]; when level or broken.
 };
 
 /// Slices per sample of the profile: fine enough that cells of the map do not alias with it.
 inline constexpr int kSlicesPerSample = 3;
 inline constexpr double kSliceStep = core::TerrainProfile::kStep / kSlicesPerSample;  // [m]
 
-/// Slices over the whole profile; the middle one of sample i of the profile is slice
+/// A stretch of the jump line; the default is that of the profile.
+struct SliceRange {
+  double start = core::TerrainProfile::kStart;  ///< First slice, in S [m].
+  int count = (core::TerrainProfile::kSamples - 1) * kSlicesPerSample + 1;
+};
+
+/// Slices over a stretch; over the profile's the middle one of sample i is slice
 /// i * kSlicesPerSample.
 [[nodiscard]] std::vector<Slice> cut_slices(const OneStepConfig& config,
-                                            const core::TerrainMap& map, const StancePose& stance);
+                                            const core::TerrainMap& map, const StancePose& stance,
+                                            const SliceRange& range = {});
 
 }  // namespace hopscotch::perception

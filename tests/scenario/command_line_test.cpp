@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -34,7 +35,7 @@ class CommandLine : public ::testing::Test {
 
 TEST_F(CommandLine, HelpIsThereForEachSubcommandWithAnExample) {
   for (const char* command :
-       {"run", "plan", "campaign", "target", "command", "report", "doctor", "bench"}) {
+       {"run", "plan", "campaign", "target", "command", "report", "doctor", "bench", "scene"}) {
     const Answer answer = call(std::string(command) + " --help");
     EXPECT_EQ(answer.status, 0) << command;
     EXPECT_NE(answer.output.find("Example:"), std::string::npos) << command;
@@ -111,6 +112,61 @@ TEST_F(CommandLine, UnknownRobotsAreListedAgainstTheKnownOnes) {
 
 TEST_F(CommandLine, ReportRefusesWhatIsNoRunFolder) {
   EXPECT_EQ(call("report " + folder_.string()).status, 2);
+}
+
+/// A 16-bit PGM of a floor 0.6 m below a camera that looks down by 0.5 rad.
+std::string floor_image(double unit) {
+  constexpr int kWidth = 320;
+  constexpr int kHeight = 240;
+  std::string bytes = "P5\n320 240\n65535\n";
+  for (int v = 0; v < kHeight; ++v) {
+    const double down = std::sin(0.5) + (v - 120) / 192.5 * std::cos(0.5);
+    const double depth = down > 0.25 ? 0.6 / down : 0.0;
+    for (int u = 0; u < kWidth; ++u) {
+      const int value = static_cast<int>(depth / unit + 0.5);
+      bytes += static_cast<char>(value >> 8);
+      bytes += static_cast<char>(value & 0xFF);
+    }
+  }
+  return bytes;
+}
+
+TEST_F(CommandLine, SceneFindsTheFloorOfADepthImage) {
+  const fs::path image = write("floor.pgm", floor_image(0.001));
+  const fs::path out = folder_ / "pictures";
+  const Answer answer =
+      call("scene " + image.string() + " --json --out " + out.string() + " 2>/dev/null");
+  EXPECT_EQ(answer.status, 0) << answer.output;
+  EXPECT_NE(answer.output.find("\"schema\":\"hopscotch.terrain/1\""), std::string::npos);
+  EXPECT_NE(answer.output.find("\"edges\":[]"), std::string::npos) << answer.output;
+  EXPECT_EQ(answer.output.find("\"targets\":[]"), std::string::npos) << answer.output;
+  for (const char* file : {"map.png", "depth.png", "terrain.json"}) {
+    EXPECT_GT(fs::file_size(out / file), 100U) << file;
+  }
+}
+
+TEST_F(CommandLine, SceneRefusesBadInputWithItsReason) {
+  const std::string whole = floor_image(0.001);
+  const std::string image = write("floor.pgm", whole).string();
+  const struct {
+    std::string arguments;
+    const char* says;
+  } kCases[] = {
+      {folder_ / "nowhere.png", "is no file"},
+      {write("cut.pgm", whole.substr(0, whole.size() / 2)).string(), "cut short"},
+      {write("empty.pgm", "P5\n320 240\n65535\n" + std::string(2 * 320 * 240, '\0')).string(),
+       "no pixel holds a reading"},
+      {write("text.png", "hello").string(), "PCD"},
+      {image + " --depth-scale 1", "unit"},
+      {image + " --intrinsics 385,385,640,360", "do not fit"},
+      {image + " --intrinsics 385,385,nan,120", "do not fit"},
+      {image + " --up y --forward -y", "--forward"},
+      {image + " --up w", "--up"}};
+  for (const auto& tested : kCases) {
+    const Answer answer = call("scene " + tested.arguments);
+    EXPECT_EQ(answer.status, 2) << tested.arguments << "\n" << answer.output;
+    EXPECT_NE(answer.output.find(tested.says), std::string::npos) << answer.output;
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "perception/edge_lines.hpp"
 #include "tests/unit/perception/flat_map.hpp"
 
 namespace hopscotch::perception {
@@ -16,10 +17,13 @@ constexpr double kHalfCell = 0.0075 + 0.0025;  // grid plus half a slice [m]
 class StepFeaturesTest : public ::testing::Test {
  protected:
   core::OneStepTerrain features(const test::Course& course) {
-    const std::vector<Slice> slices = cut_slices(config_, test::known_map(course), stance_);
-    treads_ = find_treads(config_, slices);
+    const core::TerrainMap map = test::known_map(course);
+    const std::vector<Slice> slices = cut_slices(config_, map, stance_);
+    DividedLine line{.treads = find_treads(config_, slices), .breaks = {}};
+    line.breaks = find_breaks(map, stance_, line.treads);
+    treads_ = line.treads;
     core::OneStepTerrain terrain;
-    list_features(config_, slices, treads_, terrain);
+    static_cast<void>(list_features(config_, slices, line, terrain));
     return terrain;
   }
 
@@ -58,6 +62,45 @@ TEST_F(StepFeaturesTest, StepsUpAndDownAreEdgesWithTheirHeight) {
   EXPECT_NEAR(terrain.edges[1].x, 0.90, kHalfCell);
   EXPECT_NEAR(terrain.edges[1].step, -0.17, 1e-6);
   EXPECT_EQ(terrain.gap_count, 0U);
+}
+
+TEST_F(StepFeaturesTest, StepAskewIsOneEdgeWhereItCrossesTheJumpLine) {
+  stance_.heading = 0.15;
+  const core::OneStepTerrain terrain =
+      features({.blocks = {{-1.0, 0.40, 0.0}, {0.40, 0.90, 0.12}, {0.90, 3.0, 0.24}}});
+  ASSERT_EQ(terrain.edge_count, 2U);
+  EXPECT_EQ(terrain.gap_count, 0U);
+  const double along = 1.0 / std::cos(stance_.heading);
+  EXPECT_EQ(terrain.edges[0].kind, EdgeKind::up);
+  EXPECT_NEAR(terrain.edges[0].x, 0.40 * along, kHalfCell);
+  EXPECT_NEAR(terrain.edges[0].step, 0.12, 0.002) << "slices near it hold cells of both sides";
+  EXPECT_NEAR(terrain.edges[1].x, 0.90 * along, kHalfCell);
+}
+
+TEST_F(StepFeaturesTest, GapAskewIsAsWideAsItIsAlongTheJumpLine) {
+  stance_.heading = -0.2;
+  const core::OneStepTerrain terrain = features({.blocks = {{-1.0, 0.40, 0.0}, {0.60, 3.0, 0.0}}});
+  ASSERT_EQ(terrain.gap_count, 1U);
+  const double width = terrain.gaps[0].far_x - terrain.gaps[0].near_x;
+  EXPECT_NEAR(width, 0.20 / std::cos(stance_.heading), kHalfCell);
+}
+
+TEST_F(StepFeaturesTest, EdgeBeforeOneFootOnlyIsWhereThatFootMeetsIt) {
+  core::TerrainMap map = test::known_map({.blocks = {{-1.0, 0.70, 0.0}, {0.90, 3.0, 0.0}}});
+  for (int iy = map.size_y / 2; iy < map.size_y; ++iy) {  // the left half ends earlier
+    for (int ix = 0; ix < map.size_x; ++ix) {
+      const double x = map.origin_x + (ix + 0.5) * map.resolution;
+      if (x > 0.45 && x < 0.90) map.at(ix, iy).state = core::CellState::occluded;
+    }
+  }
+  const std::vector<Slice> slices = cut_slices(config_, map, stance_);
+  DividedLine line{.treads = find_treads(config_, slices), .breaks = {}};
+  line.breaks = find_breaks(map, stance_, line.treads);
+  core::OneStepTerrain terrain;
+  static_cast<void>(list_features(config_, slices, line, terrain));
+  ASSERT_EQ(terrain.gap_count, 1U);
+  EXPECT_NEAR(terrain.gaps[0].near_x, 0.45, kHalfCell);
+  EXPECT_NEAR(terrain.gaps[0].far_x, 0.90, kHalfCell);
 }
 
 TEST_F(StepFeaturesTest, SmallUnevennessIsNoStep) {
