@@ -30,7 +30,7 @@ constexpr double kViolationMax = 5e-3;
 /// A margin below zero by less is rounding of the solver.
 constexpr double kMarginTolerance = 1e-3;
 /// Joint motion re-integrated with the held torques may miss by so much, see `certify`.
-constexpr double kDenseViolationMax = 0.02;
+constexpr double kDenseViolationMax = 0.10;
 
 // Deferred correction of a solution.
 constexpr int kPolishIterations = 60;     // in all

@@ -22,6 +22,10 @@ constexpr double kHeightMax = 0.8;    // [m]
 /// A start whose feet are farther from the origin of S belongs to another target.
 constexpr double kStartOffsetMax = 0.10;  // [m]
 constexpr double kTiltMax = 0.7;          // [rad]
+// Of the ground under the target sole.
+constexpr double kHeightTolerance = 0.04;  // [m]
+constexpr double kSoleInset = 0.01;        // from toe and heel, where maps blur edges [m]
+constexpr double kSoleMiddle = 0.03;       // either side of the sole's centre [m]
 
 template <typename... Numbers>
 std::string sentence(const char* format, Numbers... numbers) {
@@ -78,6 +82,30 @@ std::optional<Refusal> check_target(const PlannerConfig& config,
   return std::nullopt;
 }
 
+/// The ground that the profile knows under the target sole must be there, and at its height: what
+/// rises at toe or heel is cut away from the terrain only as far as a map is uncertain.
+std::optional<Refusal> check_support(const PlanarModel& model, const core::LandingTarget& target) {
+  const double half = 0.5 * (model.robot.toe + model.robot.heel) - kSoleInset;
+  for (int i = 0; i < core::TerrainProfile::kSamples; ++i) {
+    const double from_sole = std::abs(core::TerrainProfile::x(i) - target.distance);
+    const auto at = static_cast<std::size_t>(i);
+    const double above = target.profile.upper[at] - target.height;
+    if (from_sole <= half && std::isfinite(above) && above > kHeightTolerance) {
+      return Refusal{Reason::target_malformed,
+                     sentence("the ground rises %.3f m above the target sole, %.3f m from its "
+                              "centre",
+                              above, from_sole)};
+    }
+    const double below = target.height - target.profile.mean[at];
+    if (from_sole <= kSoleMiddle && std::isfinite(below) && below > kHeightTolerance) {
+      return Refusal{Reason::target_malformed,
+                     sentence("the ground is %.3f m below the target sole, %.3f m from its centre",
+                              below, from_sole)};
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<Refusal> check_start(const PlanarModel& model, const PlanRequest& request) {
   const core::RobotState& start = request.start;
   if (!is_finite(start)) {
@@ -106,6 +134,7 @@ std::optional<Refusal> check_start(const PlanarModel& model, const PlanRequest& 
 core::Result<PlanarTask> planar_task(const PlanarModel& model, const PlanRequest& request) {
   const core::LandingTarget& target = request.target;
   if (std::optional<Refusal> refusal = check_target(model.config, target)) return *refusal;
+  if (std::optional<Refusal> refusal = check_support(model, target)) return *refusal;
   if (std::optional<Refusal> refusal = check_start(model, request)) return *refusal;
   const std::optional<model::StandPose> end = model::stand_pose(model.robot, request.final_posture);
   if (!end) return Refusal{Reason::out_of_reach, "the legs cannot reach the final posture"};

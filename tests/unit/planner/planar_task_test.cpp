@@ -105,6 +105,21 @@ INSTANTIATE_TEST_SUITE_P(
                      r.target.profile.upper.fill(std::numeric_limits<double>::infinity());
                    },
                    core::Reason::target_malformed},
+        BadRequest{"inside a pit",
+                   [](PlanRequest& r) {
+                     for (double x = 0.3; x < 0.5; x += 0.01) {
+                       const auto at = static_cast<std::size_t>(core::TerrainProfile::sample(x));
+                       r.target.profile.lower[at] = r.target.profile.mean[at] = -0.5;
+                       r.target.profile.upper[at] = -0.5;
+                     }
+                   },
+                   core::Reason::target_malformed},
+        BadRequest{"inside a wall",
+                   [](PlanRequest& r) {
+                     const auto at = static_cast<std::size_t>(core::TerrainProfile::sample(0.35));
+                     r.target.profile.upper[at] = 0.1;
+                   },
+                   core::Reason::target_malformed},
         BadRequest{"NaN joint", [](PlanRequest& r) { r.start.q(3) = core::kNaN; },
                    core::Reason::bad_sensor_value},
         BadRequest{"NaN rate", [](PlanRequest& r) { r.start.w_WB.y() = core::kNaN; },

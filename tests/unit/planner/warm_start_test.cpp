@@ -31,8 +31,9 @@ TEST_F(WarmStart, FliesAParabolaOntoTheTarget) {
 TEST_F(WarmStart, IsFiniteForEveryTargetInAndOutOfReach) {
   for (double height = -0.5; height <= 0.5; height += 0.1) {
     for (double distance = 0.05; distance <= 1.0; distance += 0.05) {
-      const PlanarTask far = testing_support::task(model_, distance, height);
-      EXPECT_TRUE(kinematic_guess(model_, far, layout_).allFinite()) << distance << " " << height;
+      const auto far = planar_task(model_, testing_support::request(distance, height));
+      if (!far) continue;  // the sole would stand in the step
+      EXPECT_TRUE(kinematic_guess(model_, *far, layout_).allFinite()) << distance << " " << height;
     }
   }
 }
