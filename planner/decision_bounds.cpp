@@ -84,7 +84,8 @@ DecisionBounds decision_bounds(const PlanarModel& model, const PlanarTask& task,
   }
   fix_knot(task.start, layout.takeoff(0), writer);
   fix_knot({task.final_posture, {}}, layout.landing(layout.steps().landing), writer);
-  writer.set(layout.landing_step(), model.config.landing_step_min, model.config.landing_step_max);
+  writer.set(layout.landing_step(), model.config.landing_step_min,
+             model.config.landing_step_longest(task.distance, task.height));
   return writer.bounds;
 }
 

@@ -1,5 +1,8 @@
 #include "planner/planner_config.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace hopscotch::planner {
 
 namespace {
@@ -68,6 +71,13 @@ void load_clearance(const ConfigReader& section, PlannerConfig& config) {
 
 }  // namespace
 
+double PlannerConfig::landing_step_longest(double distance, double height) const {
+  constexpr double kEasy = 0.40;  // distance and rise together [m]
+  constexpr double kHard = 0.55;
+  const double share = (distance + std::max(height, 0.0) - kEasy) / (kHard - kEasy);
+  return std::lerp(landing_step_max, landing_step_hard, std::clamp(share, 0.0, 1.0));
+}
+
 double PlannerConfig::takeoff_step(int k) const {
   const double share = static_cast<double>(k) / (steps.takeoff - 1);
   return takeoff_first_step + share * (takeoff_last_step - takeoff_first_step);
@@ -93,6 +103,9 @@ PlannerConfig PlannerConfig::load(const ConfigReader& section) {
   config.flight_step_max = 1e-3 * section.number("flight_step_max_ms", Range::above(0.0, 100.0));
   config.landing_step_min = 1e-3 * section.number("landing_step_min_ms", Range::above(0.0, 50.0));
   config.landing_step_max = 1e-3 * section.number("landing_step_max_ms", Range::above(0.0, 100.0));
+  config.landing_step_hard =
+      1e-3 *
+      section.number("landing_step_hard_ms", Range::closed(1e3 * config.landing_step_max, 100.0));
   if (config.flight_step_min > config.flight_step_max) {
     section.reject("flight_step_min_ms", "must not exceed flight_step_max_ms");
   }

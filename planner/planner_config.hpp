@@ -31,7 +31,8 @@ struct PlannerConfig {
   double flight_step_min = 0.0;      ///< Of dt^f [s].
   double flight_step_max = 0.0;      ///< Of dt^f [s].
   double landing_step_min = 0.0;     ///< Of dt^l, the mean step [s].
-  double landing_step_max = 0.0;     ///< Of dt^l, the mean step [s].
+  double landing_step_max = 0.0;     ///< Of dt^l, the mean step, after an easy leap [s].
+  double landing_step_hard = 0.0;    ///< The same after a hard one [s].
   double landing_first_share = 0.0;  ///< First landing step as a share of dt^l [-].
   double friction = 0.0;             ///< mu of the ground [-].
   Reserves reserves;
@@ -68,6 +69,9 @@ struct PlannerConfig {
   [[nodiscard]] double takeoff_step(int k) const;
   /// Landing step `k` as a share of dt^l; short after touchdown, long when all is calm. Mean 1.
   [[nodiscard]] double landing_share(int k) const;
+  /// Upper bound of dt^l after a leap of `distance` and `height`: what the flight turned the trunk
+  /// by, the landing has to turn back, and in a short one the soles then hop [m, m -> s].
+  [[nodiscard]] double landing_step_longest(double distance, double height) const;
   /// Of the whole takeoff [s].
   [[nodiscard]] double takeoff_time() const;
 

@@ -179,7 +179,7 @@ Eigen::VectorXd kinematic_guess(const PlanarModel& model, const PlanarTask& task
   const Phases phases{takeoff_links(model, s, steps), flight_links(model, task, s, steps),
                       landing_links(model, s, steps)};
   const double flight_step = s.parabola.time / steps.flight;
-  const double landing_step = model.config.landing_step_max;
+  const double landing_step = model.config.landing_step_longest(task.distance, task.height);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(layout.size());
   for (int k = 0; k <= steps.takeoff; ++k) {
     const auto& a = phases.takeoff[static_cast<std::size_t>(k)];

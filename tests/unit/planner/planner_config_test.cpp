@@ -29,6 +29,16 @@ TEST(PlannerConfig, LoadsTheShippedFile) {
   EXPECT_LE(config.landing_step_min, config.landing_step_max);
 }
 
+TEST(PlannerConfig, HardLeapsMayLandLonger) {
+  const PlannerConfig config = testing_support::shipped_config();
+  EXPECT_EQ(config.landing_step_longest(0.25, -0.30), config.landing_step_max);
+  EXPECT_EQ(config.landing_step_longest(0.40, 0.0), config.landing_step_max);
+  EXPECT_EQ(config.landing_step_longest(0.40, 0.25), config.landing_step_hard);
+  EXPECT_EQ(config.landing_step_longest(0.60, 0.0), config.landing_step_hard);
+  const double between = config.landing_step_longest(0.43, 0.045);
+  EXPECT_NEAR(between, 0.5 * (config.landing_step_max + config.landing_step_hard), 1e-9);
+}
+
 TEST(PlannerConfig, RejectsUnknownKeysAndBrokenRanges) {
   EXPECT_THROW(load_with("knee_m:", "elbow_m:"), core::ConfigError);
   EXPECT_THROW(load_with("iterations_max:", "iterations_max: 0 #"), core::ConfigError);
@@ -37,6 +47,7 @@ TEST(PlannerConfig, RejectsUnknownKeysAndBrokenRanges) {
 
 TEST(PlannerConfig, RejectsStepLengthsUpsideDown) {
   EXPECT_THROW(load_with("landing_step_min_ms:", "landing_step_min_ms: 45 #"), core::ConfigError);
+  EXPECT_THROW(load_with("landing_step_hard_ms:", "landing_step_hard_ms: 25 #"), core::ConfigError);
   EXPECT_THROW(load_with("flight_step_max_ms:", "flight_step_max_ms: 4 #"), core::ConfigError);
 }
 
