@@ -9,6 +9,7 @@ JointGains JointGains::load(const core::ConfigReader& section) {
   gains.kp = section.vector<core::kJointsPerLeg>("kp_Nm_rad", Range::closed(0.0, 500.0));
   gains.kd = section.vector<core::kJointsPerLeg>("kd_Nms_rad", Range::closed(0.0, 5.0));
   gains.compliant_scale = section.number("compliant_scale", Range::closed(0.0, 1.0));
+  gains.flight_share = section.number("flight_share", Range::closed(0.0, 3.0));
   section.finish();
   return gains;
 }

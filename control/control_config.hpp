@@ -14,6 +14,7 @@ struct JointGains {
   core::LegVector kp;            ///< [N·m/rad]
   core::LegVector kd;            ///< [N·m·s/rad]
   double compliant_scale = 0.0;  ///< Factor on both where the MPC bears the load (landing, stand).
+  double flight_share = 0.0;     ///< Of the trunk's deviation in flight that the hips take up.
 
   static JointGains load(const core::ConfigReader& section);
 };

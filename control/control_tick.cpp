@@ -151,6 +151,7 @@ void ControlTick::enter_phase(const core::RobotState& state) noexcept {
     settle(state, config_.settle_time);
   } else if (phase() == RobotPhase::landing && is_falling_) {
     settle(state, catch_time(state));
+    impact_pending_ = true;
   } else if (phase() == RobotPhase::landing) {
     const bool follows = config_.ablation != core::Ablation::no_landing_plan;
     touchdown_ = state.stamp;
@@ -158,6 +159,15 @@ void ControlTick::enter_phase(const core::RobotState& state) noexcept {
         -((follows ? plan_.touchdown_time : plan_.duration) + config_.actuation_delay));
   }
   is_falling_ = phase() == RobotPhase::flight && core::is_standing(before);
+}
+
+/// The impact of a fall is over: the feet have lost their speed and taken some of the trunk's, so
+/// that the plan made before it would sink too far and bounce.
+void ControlTick::settle_again(const core::RobotState& state) noexcept {
+  constexpr double kImpactTime = 0.015;  // [s]
+  if (!impact_pending_ || state.stamp.since(touchdown_) < kImpactTime) return;
+  impact_pending_ = false;
+  if (phase() == RobotPhase::landing) settle(state, catch_time(state));
 }
 
 void ControlTick::observe_drives(const core::SensorReadings& readings) noexcept {
@@ -180,6 +190,7 @@ core::JointCommand ControlTick::next_command(const core::RobotState& state) noex
   const double body_time = command_time(state.stamp) - config_.actuation_delay;
   supervisor_.update(state, plan_, body_time);
   enter_phase(state);
+  settle_again(state);
   if (phase() == RobotPhase::landing || core::is_standing(phase())) follow_feet(state);
 
   core::JointCommand command;
@@ -218,12 +229,15 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
   command.kp << scale * config_.gains.kp, scale * config_.gains.kp;
   command.kd << scale * config_.gains.kd, scale * config_.gains.kd;
   if (phase() != RobotPhase::flight) return;
-  // In flight nothing can right the trunk, but the feet can still meet the ground as planned: the
-  // hips take up the trunk's deviation.
+  // In flight nothing can right the trunk, but the feet can still meet the ground level and where
+  // the CoM needs them: the hips take up more than the trunk's deviation, the ankles give it back.
   const core::JumpKnot now = sample_plan(plan_, time - config_.actuation_delay);
   const Eigen::Vector3d rpy = model::rpy_from_rotation(state.R_WB);
+  const double pitch = rpy.y() - now.rpy.y();
+  const double share = config_.gains.flight_share;
   for (const core::Leg leg : core::kAllLegs) {
-    command.q[core::joint_index(leg, core::Joint::hip_pitch)] -= rpy.y() - now.rpy.y();
+    command.q[core::joint_index(leg, core::Joint::hip_pitch)] -= share * pitch;
+    command.q[core::joint_index(leg, core::Joint::ankle)] -= (1.0 - share) * pitch;
     command.q[core::joint_index(leg, core::Joint::hip_roll)] -= rpy.x() - now.rpy.x();
   }
 }

@@ -100,6 +100,7 @@ class ControlTick {
   [[nodiscard]] double command_time(core::Stamp now) const noexcept;
   void begin_next(const core::RobotState& state) noexcept;
   void settle(const core::RobotState& state, double duration) noexcept;
+  void settle_again(const core::RobotState& state) noexcept;
   [[nodiscard]] double catch_time(const core::RobotState& state) const noexcept;
   [[nodiscard]] core::JointCommand next_command(const core::RobotState& state) noexcept;
   void enter_phase(const core::RobotState& state) noexcept;
@@ -125,7 +126,8 @@ class ControlTick {
   bool phase_changed_ = false;
   core::Stamp touchdown_;
   PlanPlacement placement_;
-  bool is_falling_ = false;  ///< In flight without a jump.
+  bool is_falling_ = false;      ///< In flight without a jump.
+  bool impact_pending_ = false;  ///< Of the end of a fall.
   DelayEstimator delays_;
   core::RobotState state_;
   MpcAnswer answer_;
