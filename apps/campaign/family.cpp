@@ -16,6 +16,7 @@ constexpr double kLastTread = 3.0;     // length of the last tread [m]
 constexpr double kBeyondEdge = 0.005;  // heels so far beyond the last edge reach the goal [m]
 constexpr double kPitDepth = 0.5;      // below the lowest tread [m]
 constexpr int kMostTreads = 100;
+constexpr int kMostJumps = 1000;  // on level ground
 
 /// A size that a family has, with its default.
 struct Size {
@@ -166,7 +167,9 @@ sim::Scenario jump_down(const SizeDraw& size) {
 sim::Scenario level_ground(const FamilySpec& spec) {
   constexpr double kRoomPerJump = 1.2;  // more than any jump covers [m]
   sim::Scenario scenario;
+  constexpr double kDriftPerJump = 0.1;  // headings drift, and so do long chains [m]
   scenario.seen.slabs = {slab(-kBehind, 2.0 + kRoomPerJump * spec.jumps, 0.0)};
+  scenario.seen.slabs[0].half_size.y() += kDriftPerJump * (spec.jumps - 1);
   scenario.goal.jumps = spec.jumps;
   return scenario;
 }
@@ -202,7 +205,7 @@ FamilySpec read_family(const FactorSection& section, std::vector<Factor>& factor
   const FamilyRule& rule = family_rules()[static_cast<std::size_t>(reader.choice("family", names))];
   FamilySpec spec{.family = rule.family, .treads = rule.treads, .jumps = 1};
   if (rule.treads > 0) spec.treads = reader.integer_or("treads", rule.treads, 1, kMostTreads);
-  if (rule.family == Family::flat) spec.jumps = reader.integer_or("jumps", 1, 1, kMostTreads);
+  if (rule.family == Family::flat) spec.jumps = reader.integer_or("jumps", 1, 1, kMostJumps);
   for (const Size& size : rule.sizes) {
     const FactorRule factor_rule{.name = size.name, .range = size.range};
     factors.push_back(reader.has(size.name) ? read_factor(section, factor_rule)
