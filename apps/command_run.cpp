@@ -46,6 +46,7 @@ struct RunOptions {
   int port = kWebPort;
   bool lcm = false;
   bool no_pictures = false;
+  bool log_depth = false;
   bool json = false;
 };
 
@@ -72,6 +73,7 @@ Prepared prepare(const RunOptions& options) {
   request.jumps_max = options.jumps;
   request.state = options.state == "truth" ? StateSource::truth : StateSource::estimate;
   request.ablation = core::ablation_from_name(options.ablation).value();  // checked by the parser
+  request.log_depth = options.log_depth;
   request.eyes = options.perception == "truth" ? Eyes::truth : Eyes::camera;
   prepared.sources = {read_file(options.scenario), read_file(options.config),
                       read_file(robot_file(request.scenario.plant.robot))};
@@ -240,6 +242,8 @@ void add_run_command(CLI::App& app, Action& action) {
       "--threads", options->threads,
       "Stages on threads of their own, paced by the clock: repeats no more to the bit");
   command->add_flag("--video", options->video, "Write video.mp4");
+  command->add_flag("--log-depth", options->log_depth,
+                    "Record depth frames too, so that `hopscotch replay` can look again");
   command->add_flag("--no-pictures", options->no_pictures, "Report without key frames: faster");
   command->add_flag("--view", options->view, "Show it in a window, in real time");
   command->add_flag("--serve", options->serve,

@@ -33,6 +33,7 @@ struct RunRequest {
   StateSource state = StateSource::estimate;
   core::Ablation ablation = core::Ablation::none;
   Threading threading = Threading::lockstep;
+  bool log_depth = false;  ///< Record what perception was given, so that it can be replayed.
 };
 
 /// Everything that happened in one tick, for logs and views.

@@ -109,6 +109,7 @@ void Pipeline::start(const core::RobotState& state) {
   HOPSCOTCH_CHECK(pose.has_value());  // start-up refuses a posture that cannot be taken
   control_.emplace(config_.control, robot_, control::StandTarget{pose->q, pose->trunk_pitch});
   mapper_.anchor_support(state);
+  events_.anchor = state;
   map_ = std::make_shared<const core::TerrainMap>(mapper_.map());
   landed_ = state.stamp;
   still_since_ = state.stamp;
@@ -128,6 +129,7 @@ void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
     if (!frame) break;
     const std::optional<core::RobotState> at_exposure = history_.at(frame->stamp);
     if (!at_exposure) continue;  // older than the history: it cannot be placed
+    events_.seen = &sight_.question();
     sight_.question() = {std::move(*frame), *at_exposure};
     sight_.ask(now);
   }
@@ -172,6 +174,7 @@ void Pipeline::ask_where(const core::RobotState& state) {
   footstep::LandingTask task = task_;
   if (for_operator_) task.target = desk_.due();
   is_next_best_ = task.target.has_value() && !for_operator_;
+  events_.asked = &decision_.question();
   decision_.question() = {map_, control_->rest_state(), task, for_operator_, ++plans_made_};
   decision_.ask(state.stamp);
 }

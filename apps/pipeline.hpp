@@ -38,8 +38,14 @@ struct Mission {
 /// Why the robot jumps no more.
 enum class MissionEnd : std::uint8_t { reached, refused, fault, stopped };
 
+struct SightQuestion;
+struct DecisionQuestion;
+
 /// What the stages produced in one tick, for logs; empty where nothing was due.
 struct PipelineEvents {
+  std::optional<core::RobotState> anchor;       ///< The map was tied to the soles of this state.
+  const SightQuestion* seen = nullptr;          ///< Went to perception; valid until the next tick.
+  const DecisionQuestion* asked = nullptr;      ///< Went to planning; valid until the next tick.
   std::shared_ptr<const core::TerrainMap> map;  ///< That was decided on.
   std::optional<core::OneStepTerrain> terrain;
   std::optional<core::TargetChoice> choice;

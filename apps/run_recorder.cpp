@@ -77,6 +77,7 @@ std::uint64_t run_identity(const RunSources& sources, const RunRequest& request)
 RunRecorder::RunRecorder(const fs::path& folder, std::uint64_t run_id, const RunRequest& request,
                          const RunSources& sources)
     : folder_(folder),
+      log_depth_(request.log_depth),
       partial_{make_partial(folder)},
       maker_(run_id),
       log_(partial_.log(), run_id),
@@ -110,6 +111,11 @@ void RunRecorder::add_listener(Listener listener) {
 void RunRecorder::put(const msgs::Event& event) {
   for (const Listener& listener : listeners_) listener(event);
   black_box_.remember(event);
+  write(event);
+}
+
+/// Into the log alone: depth is too much for listeners and for the black box.
+void RunRecorder::write(const msgs::Event& event) {
   if (log_broken_) return;
   try {
     log_.write(event);
@@ -163,6 +169,7 @@ void RunRecorder::record(const TickRecord& tick) {
   const core::Stamp now = tick.truth.state.stamp;
   const PipelineEvents& events = tick.events;
   put(now, tick.readings);
+  if (log_depth_) record_perception(now, events);
   record_decision(now, events);
   for (const core::OperatorAnswer& answer : events.answers) record(now, answer);
   if (events.perception_ms) times_.perception_ms = *events.perception_ms;
@@ -202,6 +209,24 @@ void RunRecorder::write_black_box(const RunResult& result) const {
   } catch (const std::exception& error) {
     std::fprintf(stderr, "hopscotch: no black box: %s\n", error.what());
   }
+}
+
+/// In the order in which the stages took them in: a replay does the same.
+void RunRecorder::record_perception(core::Stamp now, const PipelineEvents& events) {
+  if (events.anchor) write(maker_.make(now, msgs::AnchorRecord{*events.anchor}));
+  if (events.seen != nullptr) {
+    write(maker_.make(now, msgs::DepthRecord{events.seen->frame, events.seen->at_exposure}));
+  }
+  if (events.asked == nullptr) return;
+  const footstep::LandingTask& task = events.asked->task;
+  write(maker_.make(now, msgs::TargetQuestion{.stamp = now,
+                                              .map_stamp = events.asked->map->stamp,
+                                              .rest = events.asked->rest,
+                                              .goal_x = task.goal_x,
+                                              .goal_heading = task.goal_heading,
+                                              .source = task.source,
+                                              .target = task.target,
+                                              .for_operator = events.asked->for_operator}));
 }
 
 RunFolder RunRecorder::finish(const RunResult& result) {

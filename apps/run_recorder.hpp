@@ -54,7 +54,9 @@ class RunRecorder {
   void write_sources(const RunRequest& request, const RunSources& sources) const;
   void write_black_box(const RunResult& result) const;
   void record_decision(core::Stamp now, const PipelineEvents& events);
+  void record_perception(core::Stamp now, const PipelineEvents& events);
   void put(const msgs::Event& event);
+  void write(const msgs::Event& event);
   void close_log();
   template <typename Value>
   void put(core::Stamp now, const Value& value) {
@@ -62,6 +64,7 @@ class RunRecorder {
   }
 
   std::filesystem::path folder_;
+  bool log_depth_;
   RunFolder partial_;
   msgs::EventMaker maker_;
   msgs::RunLogWriter log_;

@@ -36,6 +36,10 @@ struct Tagged {
 [[nodiscard]] Bytes encode(const core::OneStepTerrain& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const MapView& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const core::TargetChoice& value, const Tag& tag);
+/// Aborts unless the image has the size that its intrinsics state.
+[[nodiscard]] Bytes encode(const DepthRecord& value, const Tag& tag);
+[[nodiscard]] Bytes encode(const AnchorRecord& value, const Tag& tag);
+[[nodiscard]] Bytes encode(const TargetQuestion& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const TargetCommand& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const ModeCommand& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const Ack& value, const Tag& tag);
@@ -62,6 +66,12 @@ template <>
 std::optional<Tagged<MapView>> decode(std::span<const std::uint8_t> bytes);
 template <>
 std::optional<Tagged<core::TargetChoice>> decode(std::span<const std::uint8_t> bytes);
+template <>
+std::optional<Tagged<DepthRecord>> decode(std::span<const std::uint8_t> bytes);
+template <>
+std::optional<Tagged<AnchorRecord>> decode(std::span<const std::uint8_t> bytes);
+template <>
+std::optional<Tagged<TargetQuestion>> decode(std::span<const std::uint8_t> bytes);
 template <>
 std::optional<Tagged<TargetCommand>> decode(std::span<const std::uint8_t> bytes);
 template <>

@@ -14,6 +14,9 @@ Dispatcher::Dispatcher(RunLogHandlers handlers) : handlers_(std::move(handlers))
   on(kTerrainChannel, handlers_.terrain);
   on(kMapChannel, handlers_.map);
   on(kTargetChannel, handlers_.target);
+  on(kDepthChannel, handlers_.depth);
+  on(kAnchorChannel, handlers_.anchor);
+  on(kQuestionChannel, handlers_.question);
   on(kTargetCommandChannel, handlers_.target_command);
   on(kModeCommandChannel, handlers_.mode_command);
   on(kAckChannel, handlers_.ack);

@@ -31,6 +31,15 @@ constexpr std::string_view channel_of(const MapView&) {
 constexpr std::string_view channel_of(const core::TargetChoice&) {
   return kTargetChannel;
 }
+constexpr std::string_view channel_of(const DepthRecord&) {
+  return kDepthChannel;
+}
+constexpr std::string_view channel_of(const AnchorRecord&) {
+  return kAnchorChannel;
+}
+constexpr std::string_view channel_of(const TargetQuestion&) {
+  return kQuestionChannel;
+}
 constexpr std::string_view channel_of(const TargetCommand&) {
   return kTargetCommandChannel;
 }

@@ -9,6 +9,8 @@
 
 #include "core/contact_wrenches.hpp"
 #include "core/control_status.hpp"
+#include "core/depth_frame.hpp"
+#include "core/landing_target.hpp"
 #include "core/operator_command.hpp"
 #include "core/reason.hpp"
 #include "core/robot_layout.hpp"
@@ -23,6 +25,31 @@ namespace hopscotch::msgs {
 struct Tag {
   std::uint64_t sequence = 0;  ///< Per channel and sender, from 1.
   std::uint64_t run_id = 0;    ///< Of the sender.
+};
+
+/// HOP_DEPTH: a depth frame and the state it was laid over the world with. Depth travels as 16-bit
+/// whole millimetres where all readings are such, else in tenths; what is not finite, not positive
+/// or too far comes back as 0.
+struct DepthRecord {
+  core::DepthFrame frame;
+  core::RobotState at_exposure;  ///< Interpolated to the frame's stamp.
+};
+
+/// HOP_ANCHOR: the state at which the map was tied to the ground under the soles.
+struct AnchorRecord {
+  core::RobotState state;
+};
+
+/// HOP_QUESTION: what footstep was asked.
+struct TargetQuestion {
+  core::Stamp stamp;
+  core::Stamp map_stamp;       ///< Of the newest frame in the map it was asked about.
+  core::RobotState rest;       ///< The stance to jump from.
+  double goal_x = core::kNaN;  ///< [m]; NaN: none.
+  double goal_heading = 0.0;   ///< In W [rad].
+  core::TargetSource source = core::TargetSource::perception;
+  std::optional<core::TargetOverride> target;  ///< A place asked for.
+  bool for_operator = false;                   ///< By the operator, not as the next best one.
 };
 
 /// HOP_TARGET_CMD: the operator's landing target; no target clears an earlier one.

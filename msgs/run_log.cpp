@@ -67,6 +67,15 @@ void RunLogWriter::write(core::Stamp now, const MapView& value) {
 void RunLogWriter::write(core::Stamp now, const core::TargetChoice& value) {
   file_->append(file_->maker.make(now, value));
 }
+void RunLogWriter::write(core::Stamp now, const DepthRecord& value) {
+  file_->append(file_->maker.make(now, value));
+}
+void RunLogWriter::write(core::Stamp now, const AnchorRecord& value) {
+  file_->append(file_->maker.make(now, value));
+}
+void RunLogWriter::write(core::Stamp now, const TargetQuestion& value) {
+  file_->append(file_->maker.make(now, value));
+}
 void RunLogWriter::write(core::Stamp now, const TargetCommand& value) {
   file_->append(file_->maker.make(now, value));
 }
@@ -98,12 +107,17 @@ RunLogSummary read_run_log(const std::filesystem::path& file, const RunLogHandle
   lcm::LogFile log(file.string(), "r");
   if (!log.good()) throw std::runtime_error("cannot read " + file.string());
   Dispatcher dispatcher(handlers);
+  std::uintmax_t bytes = 0;
   while (const lcm::LogEvent* event = log.readNextEvent()) {
+    constexpr std::uintmax_t kEventHeader = 28;
+    bytes += kEventHeader + event->channel.size() + static_cast<std::uintmax_t>(event->datalen);
     dispatcher.take(
         {event->timestamp * kNanosecondsPerMicrosecond}, event->channel,
         {static_cast<const std::uint8_t*>(event->data), static_cast<std::size_t>(event->datalen)});
   }
-  return dispatcher.summary();
+  RunLogSummary summary = dispatcher.summary();
+  summary.cut_short = bytes != std::filesystem::file_size(file);
+  return summary;
 }
 
 }  // namespace hopscotch::msgs

@@ -35,6 +35,9 @@ class RunLogWriter {
   void write(core::Stamp now, const core::OneStepTerrain& value);
   void write(core::Stamp now, const MapView& value);
   void write(core::Stamp now, const core::TargetChoice& value);
+  void write(core::Stamp now, const DepthRecord& value);
+  void write(core::Stamp now, const AnchorRecord& value);
+  void write(core::Stamp now, const TargetQuestion& value);
   void write(core::Stamp now, const TargetCommand& value);
   void write(core::Stamp now, const ModeCommand& value);
   void write(core::Stamp now, const Ack& value);
@@ -63,6 +66,9 @@ struct RunLogHandlers {
   Handler<core::JumpPlan> plan;
   Handler<core::OneStepTerrain> terrain;
   Handler<core::TargetChoice> target;
+  Handler<DepthRecord> depth;
+  Handler<AnchorRecord> anchor;
+  Handler<TargetQuestion> question;
   Handler<TargetCommand> target_command;
   Handler<ModeCommand> mode_command;
   Handler<Ack> ack;
@@ -77,9 +83,11 @@ struct RunLogSummary {
   std::size_t events = 0;     ///< Of any channel.
   std::size_t unknown = 0;    ///< On channels that are not ours.
   std::size_t malformed = 0;  ///< On our channels, but not decodable; not handed over.
+  bool cut_short = false;     ///< The file ends within an event, or is damaged there.
 };
 
-/// Reads a log from end to end, in the order of writing. A log that is cut short ends early.
+/// Reads a log from end to end, in the order of writing. A log that is cut short ends early,
+/// and the summary says so.
 /// @throws std::runtime_error if the file cannot be opened.
 RunLogSummary read_run_log(const std::filesystem::path& file, const RunLogHandlers& handlers);
 

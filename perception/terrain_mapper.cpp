@@ -55,14 +55,14 @@ Eigen::Isometry3d pose_of_trunk(const core::RobotState& state) {
 }
 
 /// Heading of the trunk on the ground; x of W when it points straight up or down.
-Eigen::Vector2d heading_of(const core::RobotState& state) {
-  const Eigen::Vector2d ahead = state.R_WB.col(0).head<2>();
+Eigen::Vector2d heading_of(const Eigen::Isometry3d& X_WB) {
+  const Eigen::Vector2d ahead = X_WB.linear().col(0).head<2>();
   const double length = ahead.norm();
   return length > 1e-6 ? Eigen::Vector2d(ahead / length) : Eigen::Vector2d(1.0, 0.0);
 }
 
-Eigen::Vector2d window_centre(const MapperConfig& config, const core::RobotState& state) {
-  return state.p_WB.head<2>() + config.window_ahead * heading_of(state);
+Eigen::Vector2d window_centre(const MapperConfig& config, const Eigen::Isometry3d& X_WB) {
+  return X_WB.translation().head<2>() + config.window_ahead * heading_of(X_WB);
 }
 
 Eigen::Vector3d cell_centre(const core::TerrainMap& map, std::size_t cell, float height) {
@@ -178,7 +178,7 @@ TerrainMapper& TerrainMapper::operator=(TerrainMapper&&) noexcept = default;
 
 MapStatus TerrainMapper::integrate(const core::DepthFrame& frame,
                                    const core::RobotState& at_exposure) {
-  core::TerrainMap& map = memory_->window.map;
+  const core::TerrainMap& map = memory_->window.map;
   if (!is_sound(frame)) return MapStatus::bad_frame;
   if (!is_pose_finite(at_exposure)) return MapStatus::bad_state;
   if (map.frames > 0 && frame.stamp <= map.stamp) return MapStatus::stale;
@@ -186,12 +186,31 @@ MapStatus TerrainMapper::integrate(const core::DepthFrame& frame,
   const bool slow = at_exposure.v_WB.norm() <= config_.mapper.speed_max &&
                     at_exposure.w_WB.norm() <= config_.mapper.angular_speed_max;
   if (!slow) return MapStatus::moving;
-  const BodyCapsules body = body_in_camera(robot_, at_exposure.q, frame.X_BC);
-  if (memory_->filter.filter(frame, body, memory_->depth).kept == 0) return MapStatus::blind;
+  const Eigen::Isometry3d X_WB = pose_of_trunk(at_exposure);
+  return fuse(frame, body_in_camera(robot_, at_exposure.q, frame.X_BC), X_WB * frame.X_BC, X_WB);
+}
 
-  follow(config_.mapper, window_centre(config_.mapper, at_exposure), memory_->window);
-  const Eigen::Isometry3d X_WC = pose_of_trunk(at_exposure) * frame.X_BC;
-  const BinningLimits limits{.ahead = heading_of(at_exposure),
+MapStatus TerrainMapper::integrate(const core::DepthFrame& frame, const Eigen::Isometry3d& X_WC) {
+  const core::TerrainMap& map = memory_->window.map;
+  if (!is_sound(frame)) return MapStatus::bad_frame;
+  if (!X_WC.matrix().allFinite()) return MapStatus::bad_state;
+  if (map.frames > 0 && frame.stamp <= map.stamp) return MapStatus::stale;
+  BodyCapsules nobody;
+  for (Capsule& capsule : nobody) {
+    capsule = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0};  // behind the image plane
+  }
+  Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();
+  X_WB.translation() = X_WC.translation();
+  X_WB.linear().col(0) = X_WC.linear().col(2);  // the camera looks ahead
+  return fuse(frame, nobody, X_WC, X_WB);
+}
+
+MapStatus TerrainMapper::fuse(const core::DepthFrame& frame, const BodyCapsules& body,
+                              const Eigen::Isometry3d& X_WC, const Eigen::Isometry3d& X_WB) {
+  core::TerrainMap& map = memory_->window.map;
+  if (memory_->filter.filter(frame, body, memory_->depth).kept == 0) return MapStatus::blind;
+  follow(config_.mapper, window_centre(config_.mapper, X_WB), memory_->window);
+  const BinningLimits limits{.ahead = heading_of(X_WB),
                              .lateral_max = config_.mapper.lateral_max,
                              .column_step = config_.mapper.column_step,
                              .near_row_step = config_.mapper.near_row_step,
@@ -208,7 +227,7 @@ MapStatus TerrainMapper::integrate(const core::DepthFrame& frame,
 
 MapStatus TerrainMapper::anchor_support(const core::RobotState& state) {
   if (!is_pose_finite(state)) return MapStatus::bad_state;
-  follow(config_.mapper, window_centre(config_.mapper, state), memory_->window);
+  follow(config_.mapper, window_centre(config_.mapper, pose_of_trunk(state)), memory_->window);
   for (const Eigen::Isometry3d& X_WF : model::sole_poses(robot_, state)) {
     fuse_sole(config_.mapper, robot_, X_WF, memory_->window);
   }

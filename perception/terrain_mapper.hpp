@@ -8,6 +8,7 @@
 #include "core/robot_state.hpp"
 #include "core/terrain_map.hpp"
 #include "model/robot_parameters.hpp"
+#include "perception/body_mask.hpp"
 #include "perception/perception_config.hpp"
 
 namespace hopscotch::perception {
@@ -49,6 +50,9 @@ class TerrainMapper {
   /// @param at_exposure  State at the frame's stamp.
   MapStatus integrate(const core::DepthFrame& frame, const core::RobotState& at_exposure);
 
+  /// The same for a camera that no robot carries: no body in view, no limit of speed.
+  MapStatus integrate(const core::DepthFrame& frame, const Eigen::Isometry3d& X_WC);
+
   /// Marks the ground under and right beside the soles as support at the soles' height: the camera
   /// cannot see the place where the robot stands at start-up. Call it when both feet bear load. A
   /// state that is not finite changes nothing and returns bad_state, otherwise fused.
@@ -58,6 +62,8 @@ class TerrainMapper {
 
  private:
   struct Memory;
+  MapStatus fuse(const core::DepthFrame& frame, const BodyCapsules& body,
+                 const Eigen::Isometry3d& X_WC, const Eigen::Isometry3d& X_WB);
   PerceptionConfig config_;
   model::RobotParameters robot_;
   std::unique_ptr<Memory> memory_;

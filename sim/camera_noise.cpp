@@ -246,7 +246,9 @@ void DepthNoise::disturb_edge(const Edge& edge, Random& random, const std::vecto
     const double fate = share(random);
     if (fate < model_.flying_rate) {
       const double z = z_near + share(random) * (z_far - z_near);
-      measured[far_pixel] = static_cast<float>(model_.quantum * std::round(z / model_.quantum));
+      // The same product as above, so that all readings are the same whole steps bit by bit.
+      measured[far_pixel] =
+          static_cast<float>(model_.quantum) * static_cast<float>(std::lround(z / model_.quantum));
     } else if (fate < model_.flying_rate + model_.edge_dropout_rate) {
       measured[far_pixel] = 0.0F;
     }

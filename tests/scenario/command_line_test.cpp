@@ -34,8 +34,8 @@ class CommandLine : public ::testing::Test {
 };
 
 TEST_F(CommandLine, HelpIsThereForEachSubcommandWithAnExample) {
-  for (const char* command :
-       {"run", "plan", "campaign", "target", "command", "report", "doctor", "bench", "scene"}) {
+  for (const char* command : {"run", "plan", "campaign", "target", "command", "report", "doctor",
+                              "bench", "replay", "scene"}) {
     const Answer answer = call(std::string(command) + " --help");
     EXPECT_EQ(answer.status, 0) << command;
     EXPECT_NE(answer.output.find("Example:"), std::string::npos) << command;
@@ -167,6 +167,13 @@ TEST_F(CommandLine, SceneRefusesBadInputWithItsReason) {
     EXPECT_EQ(answer.status, 2) << tested.arguments << "\n" << answer.output;
     EXPECT_NE(answer.output.find(tested.says), std::string::npos) << answer.output;
   }
+}
+
+TEST_F(CommandLine, ReplayRefusesWhatIsNoLog) {
+  const fs::path text = write("run.lcm", "no log");
+  EXPECT_EQ(call("replay " + text.string()).status, 2);
+  EXPECT_EQ(call("replay " + (folder_ / "nowhere").string()).status, 2);
+  EXPECT_EQ(call("replay " + folder_.string()).status, 2) << "a folder without images";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <string_view>
 
@@ -360,6 +361,63 @@ TEST(Convert, DamagedBytesNeverDoHarm) {
     EXPECT_LE(result->value.rejected_count, core::TargetChoice::kMaxCandidates) << "seed " << kSeed;
   }
   EXPECT_GT(refused, 0U) << "the damage never reached anything that is checked";
+}
+
+DepthRecord depth_record() {
+  DepthRecord record;
+  record.at_exposure = samples::state();
+  record.frame.stamp = {1'000'000'007};
+  record.frame.intrinsics = {16, 12, 385.0, 384.0, 8.5, 6.5};
+  record.frame.X_BC.translation() << 0.09, 0.0, 0.08;
+  for (int i = 0; i < 16 * 12; ++i) {
+    record.frame.depth.push_back(i % 7 == 0 ? 0.0F : 0.001F * static_cast<float>(400 + 97 * i));
+  }
+  return record;
+}
+
+TEST(ConvertDepth, WholeMillimetresComeBackBitByBit) {
+  const DepthRecord sent = depth_record();
+  const auto got = decode<DepthRecord>(encode(sent, {3, 4}));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->tag.sequence, 3U);
+  EXPECT_EQ(got->value.frame.depth, sent.frame.depth);
+  EXPECT_EQ(got->value.frame.stamp, sent.frame.stamp);
+  EXPECT_EQ(got->value.frame.intrinsics.cy, 6.5);
+  EXPECT_EQ(got->value.frame.X_BC.matrix(), sent.frame.X_BC.matrix());
+  EXPECT_EQ(got->value.at_exposure.q, sent.at_exposure.q);
+}
+
+TEST(ConvertDepth, OtherReadingsComeBackToATenthOfAMillimetreAndNonsenseAsNothing) {
+  DepthRecord sent = depth_record();
+  sent.frame.depth[1] = 0.71234F;
+  sent.frame.depth[2] = std::numeric_limits<float>::quiet_NaN();
+  sent.frame.depth[3] = -1.0F;
+  sent.frame.depth[4] = 1e9F;
+  const auto got = decode<DepthRecord>(encode(sent, {}));
+  ASSERT_TRUE(got);
+  EXPECT_NEAR(got->value.frame.depth[1], 0.71234F, 5.1e-5F);
+  for (const std::size_t i : {2U, 3U, 4U}) EXPECT_EQ(got->value.frame.depth[i], 0.0F);
+}
+
+TEST(ConvertDepth, DamagedImagesAreNotDecoded) {
+  const Bytes whole = encode(depth_record(), {});
+  for (std::size_t length = 0; length < whole.size(); length += 13) {
+    EXPECT_FALSE(decode<DepthRecord>({whole.data(), length}));
+  }
+  Bytes damaged = whole;
+  std::fill(damaged.end() - 20, damaged.end(), std::uint8_t{0xA5});
+  (void)decode<DepthRecord>(damaged);  // an image or nothing, but no crash
+}
+
+TEST(ConvertQuestion, ComesBackAsItWas) {
+  TargetQuestion sent{.stamp = {5}, .rest = samples::state(), .goal_x = 1.9, .goal_heading = 0.3};
+  sent.target = core::TargetOverride{.distance = 0.3, .yaw = 0.1};
+  const auto got = decode<TargetQuestion>(encode(sent, {}));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->value.goal_x, 1.9);
+  EXPECT_EQ(got->value.rest.p_WB, sent.rest.p_WB);
+  ASSERT_TRUE(got->value.target);
+  EXPECT_EQ(got->value.target->yaw, 0.1);
 }
 
 }  // namespace

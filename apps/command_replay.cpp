@@ -1,0 +1,114 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/commands.hpp"
+#include "apps/installation.hpp"
+#include "apps/replay.hpp"
+#include "apps/scene_pictures.hpp"
+#include "apps/text_file.hpp"
+
+namespace hopscotch::apps {
+
+namespace {
+
+struct ReplayOptions {
+  std::filesystem::path log;
+  std::filesystem::path config = config_directory() / "hopscotch.yaml";
+  std::filesystem::path out;
+  std::string robot = "hector";
+  std::vector<double> intrinsics;
+  double depth_scale = 0.001;
+  bool json = false;
+};
+
+std::string numbered(const char* stem, int number, const char* ending) {
+  char name[64];
+  std::snprintf(name, sizeof name, "%s-%03d%s", stem, number, ending);
+  return name;
+}
+
+void draw(const std::filesystem::path& out, int number, const ReplayedLook& look) {
+  draw_map(out / numbered("map", number, ".png"), look.map, look.report);
+  if (look.frame != nullptr) {
+    draw_over_depth(out / numbered("depth", number, ".png"), *look.frame, look.X_WC, look.report);
+  }
+}
+
+void say(std::FILE* people, const ReplayedLook& look) {
+  const core::TargetChoice& choice = look.report.choice;
+  char target[64] = "no target";
+  if (choice.target) {
+    std::snprintf(target, sizeof target, "target %.3f m ahead, %+.3f m", choice.target->distance,
+                  choice.target->height);
+  }
+  const bool compared = look.terrain_equal && look.target_equal;
+  const bool equal = compared && *look.terrain_equal && *look.target_equal;
+  std::fprintf(people, "%8.3f s  %-14s %zu edges, %zu gaps, %s%s%s\n", look.report.stamp.seconds(),
+               look.report.status.c_str(), look.report.survey.features.edge_count,
+               look.report.survey.features.gap_count, target,
+               choice.target ? "" : (" (" + choice.refusal.text() + ")").c_str(),
+               compared ? (equal ? "; as recorded" : "; DIFFERS from the record") : "");
+}
+
+ExitStatus replay(const ReplayOptions& options) {
+  const ProgramConfig config = ProgramConfig::load(options.config);
+  const model::RobotParameters robot = model::RobotParameters::load(robot_file(options.robot));
+  if (!options.out.empty()) std::filesystem::create_directories(options.out);
+  std::FILE* people = options.json ? stderr : stdout;
+  std::string lines;
+  int number = 0;
+  const LookObserver observe = [&](const ReplayedLook& look) {
+    const std::string line = terrain_json(look.report);
+    if (options.json) std::printf("%s\n", line.c_str());
+    say(people, look);
+    if (options.out.empty()) return;
+    lines += line + "\n";
+    draw(options.out, number++, look);
+  };
+  DepthScaling scaling{.intrinsics = {}, .metres_per_unit = options.depth_scale};
+  if (!options.intrinsics.empty()) {
+    const std::vector<double>& lens = options.intrinsics;
+    scaling.intrinsics = {lens[0], lens[1], lens[2], lens[3]};
+  }
+  const ReplaySummary summary = std::filesystem::is_directory(options.log)
+                                    ? replay_folder(options.log, scaling, config, robot, observe)
+                                    : replay_log(options.log, config, robot, observe);
+  if (!options.out.empty()) write_file_atomically(options.out / "terrain.jsonl", lines);
+  const int differing = summary.terrains_differing + summary.targets_differing;
+  std::fprintf(people, "%d frames, %d looks; %d terrains and %d targets differ from the record\n",
+               summary.frames, summary.looks, summary.terrains_differing,
+               summary.targets_differing);
+  return differing == 0 ? ExitStatus::ok : ExitStatus::answer_is_no;
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("replay", "Looks again at a recorded log or a folder of depth images");
+  command->footer(
+      "A log must be recorded with `run --log-depth`; what comes out is compared bit by bit with\n"
+      "what it holds, and exit status 1 says that something differs. A folder holds 16-bit depth\n"
+      "images and perhaps a text file *pose*.txt with a line \"[stamp] tx ty tz qx qy qz qw\" "
+      "each.\n"
+      "Example: hopscotch replay runs/stones-1/run.lcm --out runs/stones-1/replay");
+  const auto options = std::make_shared<ReplayOptions>();  // shared with the action below
+  command->add_option("LOG", options->log, "LCM log, or folder of depth images")->required();
+  command->add_option("--out", options->out, "Write pictures and terrain.jsonl to this folder");
+  command->add_option("--robot", options->robot, "Robot that recorded the log")
+      ->capture_default_str();
+  command->add_option("--intrinsics", options->intrinsics, "Folder: FX,FY,CX,CY [pixel]")
+      ->delimiter(',')
+      ->expected(4);
+  command->add_option("--depth-scale", options->depth_scale, "Folder: metres per unit")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--config", options->config, "Tuning")->capture_default_str();
+  command->add_flag("--json", options->json, "Print one JSON object for each look");
+  command->callback([&action, options] { action = [options] { return replay(*options); }; });
+}
+
+}  // namespace hopscotch::apps
