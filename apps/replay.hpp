@@ -20,8 +20,8 @@ struct ReplayedLook {
   const core::DepthFrame* frame = nullptr;                 ///< Newest one; null before the first.
   Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();  ///< Where it was taken.
   /// Against what was recorded, bit by bit; nothing when nothing was recorded.
-  std::optional<bool> terrain_equal;
-  std::optional<bool> target_equal;
+  std::optional<bool> terrain_equal{};
+  std::optional<bool> target_equal{};
 };
 
 using LookObserver = std::function<void(const ReplayedLook& look)>;

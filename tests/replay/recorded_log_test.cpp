@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -39,7 +40,8 @@ model::RobotParameters hector() {
 class RecordedLog : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder() = fs::path(::testing::TempDir()) / "recorded_log_test";
+    // ctest runs each test in a process of its own, side by side.
+    folder() = fs::path(::testing::TempDir()) / ("recorded_log_test-" + std::to_string(getpid()));
     fs::remove_all(folder());
     RunRequest request;
     request.scenario = sim::Scenario::from_text(kScenario, "replayed");
