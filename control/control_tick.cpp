@@ -5,6 +5,7 @@
 
 #include "control/torque_law.hpp"
 #include "model/kinematics.hpp"
+#include "model/knot_state.hpp"
 #include "model/rigid_body.hpp"
 
 namespace hopscotch::control {
@@ -24,11 +25,7 @@ std::array<Eigen::Vector3d, core::kLegs> centres(
 
 /// Mid-point of the soles of a knot as planned.
 Eigen::Vector3d planned_mid_sole(const model::RobotParameters& robot, const core::JumpKnot& knot) {
-  core::RobotState state;
-  state.p_WB = knot.p_WB;
-  state.R_WB = model::rotation_from_rpy(knot.rpy);
-  state.q = knot.q;
-  return mid_sole(model::sole_poses(robot, state));
+  return mid_sole(model::sole_poses(robot, model::state_of(knot)));
 }
 
 /// The state `delay` later [s], its rates changing as the plan's do: what acts until then has been

@@ -60,16 +60,6 @@ class StepRows {
   Excess upper_{};
 };
 
-LinkState advanced(const LinkState& from, const LinkArray<double>& rate,
-                   const LinkArray<double>& acceleration, double h) {
-  LinkState to = from;
-  for (std::size_t j = 0; j < model::kPlanarLinks; ++j) {
-    to.pitch[j] += h * rate[j];
-    to.rate[j] += h * acceleration[j];
-  }
-  return to;
-}
-
 LinkArray<double> mean(const LinkArray<double>& a, const LinkArray<double>& b,
                        const LinkArray<double>& c, const LinkArray<double>& d) {
   LinkArray<double> out;

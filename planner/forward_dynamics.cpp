@@ -80,6 +80,8 @@ LinkArray<double> solve(const model::PlanarDynamics& dynamics, const LinkState& 
   return acceleration;
 }
 
+}  // namespace
+
 LinkState advanced(const LinkState& from, const LinkArray<double>& rate,
                    const LinkArray<double>& acceleration, double h) {
   LinkState to = from;
@@ -89,8 +91,6 @@ LinkState advanced(const LinkState& from, const LinkArray<double>& rate,
   }
   return to;
 }
-
-}  // namespace
 
 LinkArray<double> stance_acceleration(const model::PlanarDynamics& dynamics, const LinkState& links,
                                       const PlanarJoints<double>& tau) {

@@ -13,6 +13,10 @@ namespace hopscotch::planner {
                                                            const LinkState& links,
                                                            const model::PlanarJoints<double>& tau);
 
+/// One explicit step of length `h` with given rates [rad/s] and accelerations [rad/s^2].
+[[nodiscard]] LinkState advanced(const LinkState& from, const model::LinkArray<double>& rate,
+                                 const model::LinkArray<double>& acceleration, double h);
+
 /// State after `duration` with constant joint torques, by Runge-Kutta steps of at most 1 ms.
 [[nodiscard]] LinkState integrate(const model::PlanarDynamics& dynamics, core::JumpPhase phase,
                                   const LinkState& from, const model::PlanarJoints<double>& tau,

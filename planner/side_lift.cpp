@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "model/kinematics.hpp"
+#include "model/knot_state.hpp"
 #include "model/rigid_body.hpp"
 #include "planner/leg_placement.hpp"
 #include "planner/straight_knot.hpp"
@@ -26,22 +27,11 @@ Matrix3d about_z(double yaw) {
   return Eigen::AngleAxisd(yaw, Vector3d::UnitZ()).toRotationMatrix();
 }
 
-core::RobotState state_of(const core::JumpKnot& knot) {
-  core::RobotState state;
-  state.p_WB = knot.p_WB;
-  state.R_WB = model::rotation_from_rpy(knot.rpy);
-  state.v_WB = knot.v_WB;
-  state.w_WB = knot.w_WB;
-  state.q = knot.q;
-  state.dq = knot.dq;
-  return state;
-}
-
 /// Where the soles go, from where they are in the straight motion.
 std::array<SoleMotion, core::kLegs> sole_motions(const PlanarModel& model, const SideStep& step,
                                                  const PlanarInstant& now, const SideShift& shift,
                                                  const core::JumpKnot& straight) {
-  const auto soles = model::sole_poses(model.robot, state_of(straight));
+  const auto soles = model::sole_poses(model.robot, model::state_of(straight));
   const Vector3d middle = 0.5 * (soles[0].translation() + soles[1].translation());
   const Vector3d ankle(now.ankle.x, 0.0, now.ankle.z);
   const Vector3d foot_rate(0.0, now.links.rate[model::kFoot], 0.0);
@@ -124,7 +114,7 @@ bool SideLift::place(const PlanarInstant& now, const SideShift& shift, core::Jum
   knot.v_WB = knot.v_WG + turn * (straight.v_WB - straight.v_WG) + spin.cross(arm);
   for (int pass = 0; pass < kCentringPasses; ++pass) {
     if (!place_legs(model_.robot, soles, knot)) return false;
-    const model::CompositeBody body = model::composite_body(model_.robot, state_of(knot));
+    const model::CompositeBody body = model::composite_body(model_.robot, model::state_of(knot));
     knot.p_WB += knot.p_WG - body.p_WG;
     knot.v_WB += knot.v_WG - body.v_WG;
   }
@@ -137,7 +127,7 @@ std::vector<double> SideLift::flight_momentum() const {
     core::JumpKnot lifted;
     const SideShift shift = step_.at(knot.time + elapsed, core::JumpPhase::flight);
     if (!place(instant(model_, motion_, knot, elapsed), shift, lifted)) return false;
-    momentum.push_back(model::composite_body(model_.robot, state_of(lifted)).momentum_W.z());
+    momentum.push_back(model::composite_body(model_.robot, model::state_of(lifted)).momentum_W.z());
     return true;
   };
   const auto first = static_cast<std::size_t>(model_.config.steps.takeoff);
@@ -169,10 +159,10 @@ void SideLift::set_efforts(const PlanarInstant& now, const SideShift& shift,
   if (now.phase == core::JumpPhase::flight) return;
   const core::JumpKnot straight = straight_knot(model_, now);
   const core::Wrench planar = straight_wrench(model_, now);
-  const auto straight_soles = model::sole_poses(model_.robot, state_of(straight));
+  const auto straight_soles = model::sole_poses(model_.robot, model::state_of(straight));
   const Vector3d planar_moment = moment_about_com(straight_soles, straight.p_WG, {planar, planar});
-  const model::CompositeBody body = model::composite_body(model_.robot, state_of(middle));
-  const auto soles = model::sole_poses(model_.robot, state_of(middle));
+  const model::CompositeBody body = model::composite_body(model_.robot, model::state_of(middle));
+  const auto soles = model::sole_poses(model_.robot, model::state_of(middle));
   const Matrix3d turn = about_z(shift.plane_yaw);
   const core::Wrench turned{turn * planar.force, turn * planar.moment};
   knot.wrenches.fill(turned);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "model/kinematics.hpp"
+#include "model/knot_state.hpp"
 #include "model/rigid_body.hpp"
 #include "tests/unit/planner/solved_jump.hpp"
 
@@ -43,22 +44,11 @@ const core::JumpPlan& lifted() {
   return plan;
 }
 
-core::RobotState state_of(const core::JumpKnot& knot) {
-  core::RobotState state;
-  state.p_WB = knot.p_WB;
-  state.R_WB = model::rotation_from_rpy(knot.rpy);
-  state.v_WB = knot.v_WB;
-  state.w_WB = knot.w_WB;
-  state.q = knot.q;
-  state.dq = knot.dq;
-  return state;
-}
-
 TEST(LiftTo3d, CentreOfMassAndItsVelocityAreThoseOfTheWholeRobot) {
   for (std::size_t i = 0; i < lifted().knot_count; ++i) {
     const core::JumpKnot& knot = lifted().knots[i];
     const model::CompositeBody body =
-        model::composite_body(level_jump().model.robot, state_of(knot));
+        model::composite_body(level_jump().model.robot, model::state_of(knot));
     EXPECT_LT((body.p_WG - knot.p_WG).norm(), kExact) << i;
     EXPECT_LT((body.v_WG - knot.v_WG).norm(), kExact) << i;
   }
@@ -71,7 +61,7 @@ TEST(LiftTo3d, StandingFeetStandStillWhereTheyShould) {
     const core::JumpKnot& knot = plan.knots[i];
     if (knot.phase == core::JumpPhase::flight) continue;
     const std::array<Eigen::Isometry3d, core::kLegs> soles =
-        model::sole_poses(level_jump().model.robot, state_of(knot));
+        model::sole_poses(level_jump().model.robot, model::state_of(knot));
     const Eigen::Vector3d middle = 0.5 * (soles[0].translation() + soles[1].translation());
     const double distance = knot.phase == core::JumpPhase::landing ? 0.4 : 0.0;
     EXPECT_LT((middle - plan_origin() - distance * along).norm(), kSolved) << i;
@@ -97,8 +87,8 @@ TEST(LiftTo3d, WrenchesTurnTheRobotAsItsMomentumChanges) {
   const model::RobotParameters& robot = level_jump().model.robot;
   for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(level_jump().model.config.steps.takeoff);
        ++i) {
-    const core::RobotState here = state_of(plan.knots[i]);
-    const core::RobotState next = state_of(plan.knots[i + 1]);
+    const core::RobotState here = model::state_of(plan.knots[i]);
+    const core::RobotState next = model::state_of(plan.knots[i + 1]);
     const model::CompositeBody a = model::composite_body(robot, here);
     const model::CompositeBody b = model::composite_body(robot, next);
     const std::array<Eigen::Isometry3d, core::kLegs> soles = model::sole_poses(robot, here);

@@ -2,6 +2,7 @@
 
 #include "model/gravity.hpp"
 #include "model/kinematics.hpp"
+#include "model/knot_state.hpp"
 #include "model/rigid_body.hpp"
 #include "planner/leg_certificate.hpp"
 #include "planner/lift_to_3d.hpp"
@@ -34,19 +35,8 @@ const core::JumpPlan& side_jump() {
   return plan;
 }
 
-core::RobotState state_of(const core::JumpKnot& knot) {
-  core::RobotState state;
-  state.p_WB = knot.p_WB;
-  state.R_WB = model::rotation_from_rpy(knot.rpy);
-  state.v_WB = knot.v_WB;
-  state.w_WB = knot.w_WB;
-  state.q = knot.q;
-  state.dq = knot.dq;
-  return state;
-}
-
 model::CompositeBody body_of(const core::JumpKnot& knot) {
-  return model::composite_body(level_jump().model.robot, state_of(knot));
+  return model::composite_body(level_jump().model.robot, model::state_of(knot));
 }
 
 double heading_of(const Eigen::Isometry3d& X_WF) {
@@ -55,12 +45,12 @@ double heading_of(const Eigen::Isometry3d& X_WF) {
 
 TEST(SideJump, SolesStandAtTheStartAndOnTheTurnedTarget) {
   const core::JumpPlan& plan = side_jump();
-  const auto start = model::sole_poses(level_jump().model.robot, state_of(plan.knots[0]));
+  const auto start = model::sole_poses(level_jump().model.robot, model::state_of(plan.knots[0]));
   for (std::size_t i = 0; i < plan.knot_count; ++i) {
     const core::JumpKnot& knot = plan.knots[i];
     if (knot.phase == core::JumpPhase::flight) continue;
     const bool landed = knot.phase == core::JumpPhase::landing;
-    const auto soles = model::sole_poses(level_jump().model.robot, state_of(knot));
+    const auto soles = model::sole_poses(level_jump().model.robot, model::state_of(knot));
     for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
       const Eigen::Isometry3d& wanted = landed ? plan.target.X_WF[leg] : start[leg];
       EXPECT_LT((soles[leg].translation() - wanted.translation()).norm(), kSolved) << i;
@@ -122,7 +112,7 @@ TEST(SideJump, WrenchesAccelerateAndTurnTheRobotAsPlanned) {
     const core::JumpKnot& knot = plan.knots[i];
     const model::CompositeBody a = body_of(knot);
     const model::CompositeBody b = body_of(plan.knots[i + 1]);
-    const auto soles = model::sole_poses(robot, state_of(knot));
+    const auto soles = model::sole_poses(robot, model::state_of(knot));
     const Eigen::Vector3d centre = 0.5 * (a.p_WG + b.p_WG);
     Eigen::Vector3d force(0.0, 0.0, -a.mass * model::kGravity);
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();
