@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/config_reader.hpp"
+#include "hopscotch_version.hpp"
 
 namespace hopscotch::apps {
 
@@ -20,7 +21,7 @@ fs::path shared_directory(const std::string& name, const fs::path& otherwise) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
-    const fs::path installed = program.parent_path().parent_path() / "share/hopscotch" / name;
+    fs::path installed = program.parent_path().parent_path() / "share/hopscotch" / name;
     if (fs::is_directory(installed, error)) return installed;
   }
   return otherwise;
@@ -37,7 +38,7 @@ fs::path page_directory() {
 
 fs::path robot_file(const std::string& name) {
   const fs::path folder = config_directory() / "robots";
-  const fs::path file = folder / (name + ".yaml");
+  fs::path file = folder / (name + ".yaml");
   const bool plain = name.find('/') == std::string::npos;
   if (plain && fs::is_regular_file(file)) return file;
   std::vector<std::string> known;

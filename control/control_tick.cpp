@@ -174,7 +174,7 @@ void ControlTick::observe_drives(const core::SensorReadings& readings) noexcept 
 }
 
 core::JointCommand ControlTick::tick(const core::RobotState& state) noexcept {
-  const core::JointCommand command = next_command(state);
+  core::JointCommand command = next_command(state);
   delays_.sent(command);
   return command;
 }

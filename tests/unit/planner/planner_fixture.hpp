@@ -76,6 +76,7 @@ inline constexpr double kCostFactor = 0.7;
 
 inline std::vector<double> test_multipliers(const ConstraintBlock& block) {
   std::vector<double> multipliers;
+  multipliers.reserve(static_cast<std::size_t>(block.rows()));
   for (int r = 0; r < block.rows(); ++r) multipliers.push_back(0.3 + 0.1 * (r % 7));
   return multipliers;
 }
