@@ -21,6 +21,7 @@ void add_run_command(CLI::App& app, Action& action);
 void add_plan_command(CLI::App& app, Action& action);
 void add_target_command(CLI::App& app, Action& action);
 void add_command_command(CLI::App& app, Action& action);
+void add_calibrate_command(CLI::App& app, Action& action);
 void add_replay_command(CLI::App& app, Action& action);
 void add_scene_command(CLI::App& app, Action& action);
 void add_report_command(CLI::App& app, Action& action);

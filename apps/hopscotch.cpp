@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   hopscotch::apps::add_target_command(app, action);
   hopscotch::apps::add_command_command(app, action);
   hopscotch::apps::add_campaign_command(app, action);
+  hopscotch::apps::add_calibrate_command(app, action);
   hopscotch::apps::add_replay_command(app, action);
   hopscotch::apps::add_scene_command(app, action);
   hopscotch::apps::add_report_command(app, action);

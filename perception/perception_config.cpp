@@ -77,6 +77,7 @@ PerceptionConfig PerceptionConfig::load(const ConfigReader& section) {
   config.mapper = MapperConfig::load(section.section("mapper"));
   config.one_step = OneStepConfig::load(section.section("one_step"));
   config.planes = PlaneConfig::load(section.section("planes"));
+  config.calibration = CalibrationConfig::load(section.section("calibration"));
   section.finish();
   return config;
 }

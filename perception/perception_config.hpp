@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/config_reader.hpp"
+#include "perception/camera_calibration.hpp"
 #include "perception/plane_segmentation.hpp"
 
 namespace hopscotch::perception {
@@ -75,6 +76,7 @@ struct PerceptionConfig {
   MapperConfig mapper;
   OneStepConfig one_step;
   PlaneConfig planes;
+  CalibrationConfig calibration;
 
   /// @throws core::ConfigError naming the key, its value and the violated rule.
   static PerceptionConfig load(const core::ConfigReader& section);

@@ -35,7 +35,7 @@ class CommandLine : public ::testing::Test {
 
 TEST_F(CommandLine, HelpIsThereForEachSubcommandWithAnExample) {
   for (const char* command : {"run", "plan", "campaign", "target", "command", "report", "doctor",
-                              "bench", "replay", "scene"}) {
+                              "bench", "replay", "scene", "calibrate"}) {
     const Answer answer = call(std::string(command) + " --help");
     EXPECT_EQ(answer.status, 0) << command;
     EXPECT_NE(answer.output.find("Example:"), std::string::npos) << command;
@@ -123,7 +123,7 @@ std::string floor_image(double unit) {
     const double down = std::sin(0.5) + (v - 120) / 192.5 * std::cos(0.5);
     const double depth = down > 0.25 ? 0.6 / down : 0.0;
     for (int u = 0; u < kWidth; ++u) {
-      const int value = static_cast<int>(depth / unit + 0.5);
+      const int value = static_cast<int>(std::lround(depth / unit));
       bytes += static_cast<char>(value >> 8);
       bytes += static_cast<char>(value & 0xFF);
     }
@@ -167,6 +167,13 @@ TEST_F(CommandLine, SceneRefusesBadInputWithItsReason) {
     EXPECT_EQ(answer.status, 2) << tested.arguments << "\n" << answer.output;
     EXPECT_NE(answer.output.find(tested.says), std::string::npos) << answer.output;
   }
+}
+
+TEST_F(CommandLine, CalibrateRefusesWhatIsNoLog) {
+  const Answer answer = call("calibrate " + write("run.lcm", "no log").string());
+  EXPECT_EQ(answer.status, 2);
+  EXPECT_NE(answer.output.find("run.lcm"), std::string::npos) << answer.output;
+  EXPECT_EQ(call("calibrate " + (folder_ / "nowhere").string()).status, 2);
 }
 
 TEST_F(CommandLine, ReplayRefusesWhatIsNoLog) {
