@@ -14,10 +14,10 @@ struct CertifiedMotion {
 /// Checks a motion against the physical limits (not the reserves) every millisecond, and its
 /// dynamics by integrating the planned torques, held over each step, from each knot to the next.
 /// Knows nothing of the optimisation. Margins are distances to a limit divided by it; for the
-/// normal force divided by the weight, for clearances by the configured one, over the middle of the
-/// flight. `dense_max_violation` is the largest of: a negative margin, a point of the leg below the
-/// terrain [0.1 m], the error of the integrated pitches [rad] and rates [of the largest motor
-/// speed].
+/// normal force divided by the weight, for clearances by the configured one; near lift-off and
+/// touchdown these count only where they are negative by more than the smooth terrain may be too
+/// high. `dense_max_violation` is the largest of: a negative margin, the error of the integrated
+/// pitches [rad] and rates [of the largest motor speed].
 [[nodiscard]] CertifiedMotion certify(const PlanarModel& model, const PlanarTask& task,
                                       const PlanarMotion& motion);
 

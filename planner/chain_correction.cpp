@@ -13,19 +13,35 @@ namespace {
 
 using model::LinkArray;
 
-/// Kept from a physical limit that was broken, in row units: what lies between the places that are
-/// looked at, and a light foot, whose friction is a small number of newtons.
+/// Kept from a physical limit, in row units: what lies between the places that are looked at, and a
+/// light foot, whose friction is a small number of newtons.
 constexpr double kMargin = 1e-2;
+constexpr double kTerrainScale = 0.1;       // of clearances among defects [m]
+constexpr double kTerrainMargin = 1e-3;     // kept from the terrain [m]
+constexpr double kContactAllowance = 2e-3;  // sole and terrain touch [m]
 /// Longest step of the integration; its error is far below what is looked for [s].
 constexpr double kStepMax = 4e-3;
 constexpr double kRateScale = 21.0;  // of the errors of rates [rad/s]
 
-/// The rows of a step against the physical limits.
-class StepRows {
- public:
-  using Excess = std::array<double, ChainLayout::kStanceRows>;
+/// By how much each row of a step exceeds its physical limits at most, on either side; less than
+/// zero where there is room.
+struct Excess {
+  std::array<double, ChainLayout::kStanceRows> below;
+  std::array<double, ChainLayout::kStanceRows> above;
+  std::array<double, ChainLayout::kClearanceRows> terrain;  ///< [m]
 
-  explicit StepRows(const PlanarModel& model) : dynamics_(model.dynamics) {
+  Excess() {
+    below.fill(-kUnbounded);
+    above.fill(-kUnbounded);
+    terrain.fill(-kUnbounded);
+  }
+};
+
+/// The physical limits of a step, at any instant of it.
+class StepLimits {
+ public:
+  StepLimits(const PlanarModel& model, const PlanarTask& task, const PlanarMotion& motion)
+      : model_(model), task_(task), motion_(motion) {
     motors_.limits = motor_limits(model.robot, Reserves{1.0, 1.0, 1.0, 1.0});
     ground_ = ground_rows(model.dynamics.chain(), model.config, 0.0);
     ground_.friction = model.config.friction;
@@ -36,28 +52,51 @@ class StepRows {
                    std::span(upper_).subspan<MotorRows::kRows>());
   }
 
-  /// Raises `worst` to by how much each row exceeds its limits at this instant.
-  void note(core::JumpPhase phase, const LinkState& links, const LinkArray<double>& acceleration,
-            const model::PlanarJoints<double>& tau, Excess& worst) const {
-    Excess row{};
+  /// @param time Since the start [s].
+  void note(core::JumpPhase phase, double time, const LinkState& links,
+            const LinkArray<double>& acceleration, const model::PlanarJoints<double>& tau,
+            Excess& excess) const {
+    std::array<double, ChainLayout::kStanceRows> row{};
     motors_.write(tau, links.rate, LinkArray<double>{}, row.data());
     std::size_t rows = MotorRows::kRows;
-    if (phase != core::JumpPhase::flight) {
-      ground_.write(dynamics_.stance_loads(links.pitch, links.rate, acceleration),
+    if (phase == core::JumpPhase::flight) {
+      note_terrain(time, links.pitch, excess);
+    } else {
+      ground_.write(model_.dynamics.stance_loads(links.pitch, links.rate, acceleration),
                     row.data() + MotorRows::kRows);
       rows = row.size();
     }
     for (std::size_t r = 0; r < rows; ++r) {
-      worst[r] = std::max({worst[r], row[r] - upper_[r] + kMargin, lower_[r] - row[r] + kMargin});
+      excess.below[r] = std::max(excess.below[r], lower_[r] - row[r]);
+      excess.above[r] = std::max(excess.above[r], row[r] - upper_[r]);
     }
   }
 
  private:
-  const model::PlanarDynamics& dynamics_;
+  void note_terrain(double time, const LinkArray<double>& a, Excess& excess) const {
+    const double t = time - motion_.liftoff_time;
+    const model::PlanarVector<double> com = model_.dynamics.com(a);
+    const model::PlanarVector<double>& v = motion_.liftoff_velocity;
+    const model::PlanarVector<double> ankle{
+        motion_.liftoff_com.x + v.x * t - com.x,
+        motion_.liftoff_com.z + v.z * t - 0.5 * model::kGravity * t * t - com.z};
+    const auto depth = [&](const model::PlanarVector<double>& point) {
+      return task_.terrain.at(ankle.x + point.x).height - ankle.z - point.z;
+    };
+    const model::PlanarDynamics& dynamics = model_.dynamics;
+    excess.terrain[0] = std::max(excess.terrain[0], depth(dynamics.toe(a)) - kContactAllowance);
+    excess.terrain[1] = std::max(excess.terrain[1], depth(dynamics.heel(a)) - kContactAllowance);
+    excess.terrain[2] =
+        std::max(excess.terrain[2], depth(dynamics.knee(a)) + model_.robot.shank_radius);
+  }
+
+  const PlanarModel& model_;
+  const PlanarTask& task_;
+  const PlanarMotion& motion_;
   MotorRows motors_;
   GroundRows ground_;
-  Excess lower_{};
-  Excess upper_{};
+  std::array<double, ChainLayout::kStanceRows> lower_{};
+  std::array<double, ChainLayout::kStanceRows> upper_{};
 };
 
 LinkArray<double> mean(const LinkArray<double>& a, const LinkArray<double>& b,
@@ -69,11 +108,11 @@ LinkArray<double> mean(const LinkArray<double>& a, const LinkArray<double>& b,
   return out;
 }
 
-/// Where a step ends when its torques are held (Runge-Kutta of fourth order); notes the rows on the
-/// way.
+/// Where a step ends when its torques are held (Runge-Kutta of fourth order); notes the limits on
+/// the way.
 LinkState integrate_step(const PlanarModel& model, const PlanarKnot& knot,
-                         const model::PlanarJoints<double>& tau, const StepRows& limits,
-                         StepRows::Excess& worst) {
+                         const model::PlanarJoints<double>& tau, const StepLimits& limits,
+                         Excess& excess) {
   const auto acceleration = [&](const LinkState& links) {
     return knot.phase == core::JumpPhase::flight ? flight_acceleration(model.dynamics, links, tau)
                                                  : stance_acceleration(model.dynamics, links, tau);
@@ -83,7 +122,7 @@ LinkState integrate_step(const PlanarModel& model, const PlanarKnot& knot,
   LinkState state = knot.links;
   for (int i = 0; i < substeps; ++i) {
     const LinkArray<double> a0 = acceleration(state);
-    limits.note(knot.phase, state, a0, tau, worst);
+    limits.note(knot.phase, knot.time + i * h, state, a0, tau, excess);
     const LinkState first = advanced(state, state.rate, a0, 0.5 * h);
     const LinkArray<double> a1 = acceleration(first);
     const LinkState second = advanced(state, first.rate, a1, 0.5 * h);
@@ -93,7 +132,7 @@ LinkState integrate_step(const PlanarModel& model, const PlanarKnot& knot,
     state = advanced(state, mean(state.rate, first.rate, second.rate, third.rate),
                      mean(a0, a1, a2, a3), h);
   }
-  limits.note(knot.phase, state, acceleration(state), tau, worst);
+  limits.note(knot.phase, knot.time + knot.dt, state, acceleration(state), tau, excess);
   return state;
 }
 
@@ -111,38 +150,89 @@ double correct_step(const PlanarKnot& knot, const PlanarKnot& next, const LinkSt
   return defect;
 }
 
+/// First row of step `i` of the whole jump.
+int first_row(const ChainLayout& layout, int i) {
+  const StepCounts& steps = layout.steps();
+  if (i < steps.takeoff) return layout.takeoff_rows(i);
+  if (i < steps.takeoff + steps.flight) return layout.flight_rows(i - steps.takeoff);
+  return layout.landing_rows(i - steps.takeoff - steps.flight);
+}
+
+/// Bounds for the rows of a step that take back what exceeds the limits between its ends: a row at
+/// the mid-point and the worst instant are taken to change alike.
+double bound_rows(const Excess& excess, int first, int rows, const Eigen::VectorXd& values,
+                  ChainCorrection& correction) {
+  double worst = 0.0;
+  for (int r = 0; r < rows; ++r) {
+    const double below = excess.below[static_cast<std::size_t>(r)];
+    const double above = excess.above[static_cast<std::size_t>(r)];
+    correction.lower(first + r) = values(first + r) + below + kMargin;
+    correction.upper(first + r) = values(first + r) - above - kMargin;
+    worst = std::max({worst, below, above});
+  }
+  return worst;
+}
+
+/// The same for the clearances of the knots at the ends of flight step `k`.
+double bound_clearance(const Excess& excess, const ChainLayout& layout, int k,
+                       const Eigen::VectorXd& values, ChainCorrection& correction) {
+  double worst = 0.0;
+  for (int r = 0; r < ChainLayout::kClearanceRows; ++r) {
+    const double missing = excess.terrain[static_cast<std::size_t>(r)];
+    worst = std::max(worst, missing / kTerrainScale);
+    for (const int step : {k - 1, k}) {
+      if (step < 0 || step + 1 >= layout.steps().flight) continue;
+      const int row = layout.clearance(step) + r;
+      correction.lower(row) =
+          std::max(correction.lower(row), values(row) + missing + kTerrainMargin);
+    }
+  }
+  return worst;
+}
+
 }  // namespace
 
 ChainCorrection::ChainCorrection(const ChainLayout& layout)
     : steps(static_cast<std::size_t>(layout.steps().takeoff + layout.steps().flight +
                                      layout.steps().landing)),
-      tightening(Eigen::VectorXd::Zero(layout.row_slots())) {}
+      lower(layout.row_slots()),
+      upper(layout.row_slots()) {
+  clear_bounds();
+}
 
-MotionDefect add_correction(const PlanarModel& model, const PlanarMotion& motion,
-                            const ChainLayout& layout, ChainCorrection& correction) {
-  const StepRows limits(model);
-  const StepCounts& steps = layout.steps();
+void ChainCorrection::clear() {
+  std::fill(steps.begin(), steps.end(), StepCorrection{});
+  clear_bounds();
+}
+
+void ChainCorrection::clear_bounds() {
+  lower.setConstant(-kUnbounded);
+  upper.setConstant(kUnbounded);
+}
+
+MotionDefect update_correction(const PlanarModel& model, const PlanarTask& task,
+                               const ChainLayout& layout, const SolvedRows& solved,
+                               ChainCorrection& correction) {
+  const PlanarMotion& motion = solved.motion;
+  const StepLimits limits(model, task, motion);
   MotionDefect defect;
+  correction.clear_bounds();
   for (std::size_t i = 0; i < correction.steps.size(); ++i) {
     const PlanarKnot& knot = motion.knots[i];
-    const int k = static_cast<int>(i);
-    int first = layout.takeoff_rows(k);
-    if (k >= steps.takeoff) first = layout.flight_rows(k - steps.takeoff);
-    if (k >= steps.takeoff + steps.flight) {
-      first = layout.landing_rows(k - steps.takeoff - steps.flight);
-    }
     const model::PlanarJoints<double> tau = instant(model, motion, knot, 0.5 * knot.dt).tau;
-    StepRows::Excess excess{};
+    Excess excess;
     const LinkState reached = integrate_step(model, knot, tau, limits, excess);
     defect.dynamics = std::max(
         defect.dynamics, correct_step(knot, motion.knots[i + 1], reached, correction.steps[i]));
+    const int step = static_cast<int>(i);
     const bool flight = knot.phase == core::JumpPhase::flight;
     const int rows = flight ? ChainLayout::kFlightRows : ChainLayout::kStanceRows;
-    for (int r = 0; r < rows; ++r) {
-      const double missing = excess[static_cast<std::size_t>(r)];
-      correction.tightening(first + r) += missing;
-      defect.limits = std::max(defect.limits, missing - kMargin);
-    }
+    defect.limits = std::max(defect.limits, bound_rows(excess, first_row(layout, step), rows,
+                                                       solved.values, correction));
+    if (!flight) continue;
+    defect.limits = std::max(
+        defect.limits,
+        bound_clearance(excess, layout, step - layout.steps().takeoff, solved.values, correction));
   }
   return defect;
 }

@@ -11,26 +11,41 @@ namespace hopscotch::planner {
 
 /// What a solved jump misses between its knots, as constants for another solve of the same problem
 /// (deferred correction): a step with constant acceleration is not quite what constant torques
-/// make, and rows at a step's mid-point do not see its ends.
+/// make, and rows at mid-points and knots do not see what is between them.
 struct ChainCorrection {
   std::vector<StepCorrection> steps;  ///< Of all phases, in order.
-  Eigen::VectorXd tightening;         ///< Of each row's bounds, >= 0, in the row's units.
+  /// Bounds for each row, in its units, that keep the motion next to it inside of the physical
+  /// limits; they count where they are narrower than the row's own.
+  Eigen::VectorXd lower;
+  Eigen::VectorXd upper;
 
   explicit ChainCorrection(const ChainLayout& layout);
+
+  /// Corrects nothing any more.
+  void clear();
+  /// Bounds rows no more: what another jump close by may start from.
+  void clear_bounds();
 };
 
 /// The largest of what a motion misses.
 struct MotionDefect {
   double dynamics = 0.0;  ///< Pitch [rad] or rate [of the largest motor speed] at a step's end.
-  double limits = 0.0;    ///< Beyond a physical limit, in row units.
+  double limits = 0.0;    ///< Beyond a physical limit, in row units; terrain [0.1 m].
 
   [[nodiscard]] double worst() const { return std::max(dynamics, limits); }
 };
 
+/// A solution: its motion, told what it was solved with, and the values of its rows.
+struct SolvedRows {
+  const PlanarMotion& motion;
+  const Eigen::VectorXd& values;  ///< In the order of ChainLayout's slots.
+};
+
 /// Integrates a solved motion with its torques held over each step, compares with the knots and the
-/// physical limits, and adds what is missing to `correction`, which `motion` was solved with.
-MotionDefect add_correction(const PlanarModel& model, const PlanarMotion& motion,
-                            const ChainLayout& layout, ChainCorrection& correction);
+/// physical limits, and updates `correction`, which the motion was solved with.
+MotionDefect update_correction(const PlanarModel& model, const PlanarTask& task,
+                               const ChainLayout& layout, const SolvedRows& solved,
+                               ChainCorrection& correction);
 
 /// Tells a motion what it was solved with.
 void set_correction(const ChainCorrection& correction, PlanarMotion& motion);

@@ -204,10 +204,9 @@ void ChainProblem::correct(const ChainCorrection& correction) {
   for (StepPlace<kStanceDof>& place : landing_places_) set_correction(*step++, place);
   write_bounds();
   for (int i = 0; i < layout_.row_slots(); ++i) {
-    const double range = upper_(i) - lower_(i);
-    const double by = std::min(correction.tightening(i), 0.45 * range);
-    lower_(i) += by;
-    upper_(i) -= by;
+    const double room = 0.45 * (upper_(i) - lower_(i));
+    lower_(i) = std::max(lower_(i), std::min(correction.lower(i), lower_(i) + room));
+    upper_(i) = std::min(upper_(i), std::max(correction.upper(i), upper_(i) - room));
   }
 }
 

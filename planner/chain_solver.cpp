@@ -103,7 +103,7 @@ ChainOutcome ChainSolver::restart(const ChainProblem& problem, const SolveOption
 }
 
 ChainOutcome ChainSolver::solve_again(const ChainProblem& problem, const SolveOptions& options) {
-  return restart(problem, options, {.push = 1e-2, .barrier = 1e-3, .spread = 1e2});
+  return restart(problem, options, {.push = 1e-2, .barrier = 1e-3, .spread = 1e3});
 }
 
 ChainOutcome ChainSolver::polish(const ChainProblem& problem, const SolveOptions& options) {
@@ -176,7 +176,7 @@ ChainOutcome ChainSolver::iterate(const ChainProblem& problem, const SolveOption
     const double violation =
         std::max(equalities_.cwiseAbs().maxCoeff(), residual_.cwiseAbs().maxCoeff());
     const double error = std::max(outcome.stationarity, violation);
-    if (error <= options.tolerance &&
+    if (outcome.iterations >= options.iterations_min && error <= options.tolerance &&
         slots_.complementarity(0.0) <= kComplementarityEnd * barrier_end) {
       outcome.status = SolveStatus::solved;
       break;

@@ -37,6 +37,8 @@ class ChainSolver {
 
   /// Decision vector of the last solve.
   [[nodiscard]] auto x() const { return point_.head(layout_.variables()); }
+  /// Values of the slots at x().
+  [[nodiscard]] const Eigen::VectorXd& slot_values() const { return values_; }
   /// Multipliers of the last solve, in the order of ChainLayout.
   [[nodiscard]] const Eigen::VectorXd& slot_multipliers() const { return slots_.multiplier(); }
   /// The inequality with the largest multiplier at the end of the last solve: what resists most.

@@ -30,12 +30,19 @@ constexpr double kViolationMax = 5e-3;
 /// A margin below zero by less is rounding of the solver.
 constexpr double kMarginTolerance = 1e-3;
 /// Joint motion re-integrated with the held torques may miss by so much, see `certify`.
-constexpr double kDenseViolationMax = 0.10;
+constexpr double kDenseViolationMax = 1e-3;
+/// The same of a solution of Ipopt, which nothing corrects between its knots.
+constexpr double kUncorrectedViolationMax = 0.10;
+
+/// A warm start that takes longer was a bad one: from the closed-form guess instead.
+constexpr int kWarmIterationsMax = 25;
 
 // Deferred correction of a solution.
-constexpr int kPolishIterations = 60;     // in all
+constexpr int kPolishIterations = 50;     // in all
 constexpr int kPolishIterationsMax = 25;  // of one pass
 constexpr double kPolishViolationMax = 1e-3;
+/// A pass that leaves more has no solution nearby.
+constexpr double kPolishHopeless = 1e-2;
 /// Dynamics between the knots and limits beyond it are good: an aim that leaves room below the
 /// tolerance of the certificate.
 constexpr double kDefectWanted = 7e-4;
@@ -79,37 +86,42 @@ Refusal infeasible(const SolveOutcome& outcome, const PlanarTask& task, std::str
   return {Reason::plan_infeasible, text + by};
 }
 
-Refusal not_certified(const core::Certificate& certificate) {
+double violation_max(Solver solver) {
+  return solver == Solver::chain ? kDenseViolationMax : kUncorrectedViolationMax;
+}
+
+Refusal not_certified(const core::Certificate& certificate, Solver solver) {
   const core::CertificateEntry& worst = certificate.binding();
   char text[160];
   std::snprintf(text, sizeof text,
                 "%s has margin %.3f at %.3f s; largest dense violation %.3f (allowed %.3f)",
                 std::string(worst.name).c_str(), worst.margin, worst.time,
-                certificate.dense_max_violation, kDenseViolationMax);
+                certificate.dense_max_violation, violation_max(solver));
   return {Reason::certificate_refused, text};
 }
 
-bool is_certified(const core::Certificate& certificate) {
+bool is_certified(const core::Certificate& certificate, Solver solver) {
   return certificate.binding().margin >= -kMarginTolerance &&
-         certificate.dense_max_violation <= kDenseViolationMax;
+         certificate.dense_max_violation <= violation_max(solver);
 }
 
 /// Fills certificate, peaks and knots of a plan whose target is set. @return why it is refused.
 std::optional<Refusal> certify_and_lift(const PlanarModel& model, const PlanarTask& task,
-                                        const SolvedMotion& solved, core::JumpPlan& plan) {
+                                        const SolvedMotion& solved, Solver solver,
+                                        core::JumpPlan& plan) {
   const PlanarMotion& motion = solved.motion;
   const CertifiedMotion certified = certify(model, task, motion);
   plan.certificate = certified.certificate;
   plan.certificate.max_violation = solved.outcome.violation;
   plan.peaks = certified.peaks;
-  if (!is_certified(plan.certificate)) return not_certified(plan.certificate);
+  if (!is_certified(plan.certificate, solver)) return not_certified(plan.certificate, solver);
   if (!lift_to_3d(model, motion, plan.target, plan)) {
     return Refusal{Reason::out_of_reach, "a leg cannot reach so far to the side"};
   }
   if (!side_target(plan.target).is_straight()) {
     certify_legs(model.robot, model.config.friction, plan);
   }
-  if (!is_certified(plan.certificate)) return not_certified(plan.certificate);
+  if (!is_certified(plan.certificate, solver)) return not_certified(plan.certificate, solver);
   return std::nullopt;
 }
 
@@ -126,6 +138,7 @@ struct JumpPlanner::Memory {
   PlanarModel sideways;  ///< For the others: what one leg may use more than the other is kept.
   DecisionLayout layout;
   ChainSolver chain;
+  ChainCorrection correction;    ///< Of the last solve.
   bool chain_is_solved = false;  ///< The chain solver holds a certified jump with its multipliers.
   Eigen::VectorXd previous;      ///< The last certified jump; empty before the first.
   std::string_view obstacle;     ///< Limit that the last refusal is about.
@@ -135,10 +148,13 @@ struct JumpPlanner::Memory {
       : straight(robot, config),
         sideways(robot, with_room_for_one_leg(config)),
         layout(config.steps),
-        chain(layout) {}
+        chain(layout),
+        correction(ChainLayout(layout)) {}
 
   [[nodiscard]] SolvedMotion solve(const PlanarModel& model, const PlanarTask& task,
                                    const PlanRequest& request, StartGuess guess);
+  [[nodiscard]] ChainOutcome solve_chain(const PlanarModel& model, const PlanarTask& task,
+                                         ChainProblem& problem, StartGuess guess);
   void refine(const PlanarModel& model, const PlanarTask& task, ChainProblem& problem,
               SolvedMotion& best);
 };
@@ -156,37 +172,62 @@ SolvedMotion JumpPlanner::Memory::solve(const PlanarModel& model, const PlanarTa
     return {solved, motion_from_decision(model, task, layout, solved.x)};
   }
   ChainProblem problem(model, task, layout);
-  ChainOutcome solved;
-  if (warm && chain_is_solved) {
-    solved = chain.solve_again(problem, options);
-  } else {
-    solved = chain.solve(problem, warm ? previous : kinematic_guess(model, task, layout), options);
-  }
+  const ChainOutcome solved = solve_chain(model, task, problem, guess);
   chain_is_solved = false;
   obstacle = slot_name(problem.layout(), chain.tightest_slot());
   SolvedMotion out{{solved.status, solved.iterations, solved.violation, solved.cost, chain.x()},
                    motion_from_decision(model, task, layout, chain.x())};
+  set_correction(correction, out.motion);
   if (acceptable(out.outcome)) refine(model, task, problem, out);
   return out;
+}
+
+/// From the last jump and what it missed between its knots, else from a guess.
+ChainOutcome JumpPlanner::Memory::solve_chain(const PlanarModel& model, const PlanarTask& task,
+                                              ChainProblem& problem, StartGuess guess) {
+  SolveOptions options{model.config.iterations_max, model.config.tolerance};
+  int spent = 0;
+  const bool warm = guess == StartGuess::previous;
+  if (warm && chain_is_solved) {
+    correction.clear_bounds();
+    problem.correct(correction);
+    options.iterations_max = kWarmIterationsMax;
+    const ChainOutcome solved = chain.solve_again(problem, options);
+    if (solved.status == SolveStatus::solved) return solved;
+    spent = solved.iterations;
+    options.iterations_max = model.config.iterations_max;
+  }
+  correction.clear();
+  problem.correct(correction);
+  const bool far = !warm || chain_is_solved;
+  ChainOutcome solved =
+      chain.solve(problem, far ? kinematic_guess(model, task, layout) : previous, options);
+  solved.iterations += spent;
+  return solved;
 }
 
 /// Deferred correction: solves again with what the motion misses between its knots, and keeps the
 /// motion that misses least.
 void JumpPlanner::Memory::refine(const PlanarModel& model, const PlanarTask& task,
                                  ChainProblem& problem, SolvedMotion& best) {
-  ChainCorrection correction(problem.layout());
   PlanarMotion motion = best.motion;
-  double least = add_correction(model, motion, problem.layout(), correction).worst();
+  const auto examine = [&] {
+    return update_correction(model, task, problem.layout(), {motion, chain.slot_values()},
+                             correction)
+        .worst();
+  };
+  double least = examine();
   double defect = least;
   int left = kPolishIterations;
   while (left > 0 && defect > kDefectWanted) {
     problem.correct(correction);
-    const SolveOptions options{std::min(left, kPolishIterationsMax), model.config.tolerance};
+    const SolveOptions options{std::min(left, kPolishIterationsMax), model.config.tolerance, 1};
     const ChainOutcome solved = chain.polish(problem, options);
     left -= std::max(1, solved.iterations);
     motion = motion_from_decision(model, task, layout, chain.x());
     set_correction(correction, motion);
-    defect = add_correction(model, motion, problem.layout(), correction).worst();
+    defect = examine();
+    if (solved.violation > kPolishHopeless) break;
     if (defect >= least || solved.violation > kPolishViolationMax) continue;
     least = defect;
     best.motion = motion;
@@ -242,7 +283,8 @@ core::Result<core::JumpPlan> JumpPlanner::plan(const PlanRequest& request) {
                                                       : core::PlanStatus::iteration_limit;
   plan.iterations = outcome.iterations;
   plan.warm = warm;
-  if (std::optional<Refusal> refusal = certify_and_lift(model, *task, solved, plan)) {
+  if (std::optional<Refusal> refusal =
+          certify_and_lift(model, *task, solved, request.solver, plan)) {
     memory_->obstacle = plan.certificate.binding().name;
     return *refusal;
   }

@@ -1,19 +1,20 @@
-/// Prints targets for config/bench/planner_targets.csv (without its first line): those of a fine
-/// grid that Ipopt solves from any of five guesses. An argument (stand, low or moving) restricts
-/// the start state. What the chain solver leaves violated by more than `kHopeless` is not tried
-/// with Ipopt: those jumps are far outside, and five refusals of Ipopt take seconds. Ten minutes of
-/// a core.
+/// Makes config/bench/planner_targets.csv, in two steps:
+///   planner_grid reach [START]   prints the targets of a fine grid that Ipopt solves from any of
+///                                five guesses; START (stand, low or moving) restricts it
+///   planner_grid choose N        sorts such a list from the standard input and prints N of it,
+///                                spread evenly, below the names of the columns
+/// The chain solver has no say in what counts as reachable. Five minutes of a core.
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <iostream>
 #include <string>
 #include <vector>
 
 #include "core/config_reader.hpp"
-#include "planner/chain_solver.hpp"
 #include "planner/ipopt_problem.hpp"
 #include "planner/landing_phase.hpp"
 #include "planner/planar_task.hpp"
@@ -25,7 +26,8 @@ namespace {
 using namespace hopscotch;           // NOLINT: a program of one file
 using namespace hopscotch::planner;  // NOLINT
 
-constexpr double kHopeless = 0.05;
+/// An attempt that ends further from feasible than this is not followed by one from elsewhere.
+constexpr double kHopeless = 0.1;
 
 struct Entry {
   double distance = 0.0;
@@ -45,12 +47,14 @@ class Grid {
   [[nodiscard]] bool is_reachable(const Entry& entry) const {
     const core::Result<PlanarTask> task = task_of(entry);
     if (!task) return false;
-    if (is_hopeless(*task)) return false;
     constexpr std::array<std::array<double, 2>, 5> kStarts{
         {{0.0, 0.0}, {-0.05, 0.0}, {0.05, 0.0}, {0.0, 0.05}, {0.0, -0.05}}};
-    return std::any_of(kStarts.begin(), kStarts.end(), [&](const auto& shift) {
-      return solves(*task, guess(*task, shift[0], shift[1]));
-    });
+    for (const auto& [ahead, up] : kStarts) {
+      const SolveOutcome outcome = solve(*task, guess(*task, ahead, up));
+      if (outcome.status == SolveStatus::solved && outcome.violation < 1e-3) return true;
+      if (outcome.violation > kHopeless) return false;
+    }
+    return false;
   }
 
  private:
@@ -65,27 +69,20 @@ class Grid {
                                               robot_),
                         .final_posture = posture_});
   }
-  [[nodiscard]] bool is_hopeless(const PlanarTask& task) const {
-    ChainSolver solver(layout_);
-    const ChainProblem problem(model_, task, layout_);
-    return solver.solve(problem, guess(task, 0.0, 0.0), {model_.config.iterations_max, 1e-3})
-               .violation > kHopeless;
-  }
   /// The closed-form guess for a target a little beside.
   [[nodiscard]] Eigen::VectorXd guess(PlanarTask task, double ahead, double up) const {
     task.distance += ahead;
     task.height += up;
     return kinematic_guess(model_, task, layout_);
   }
-  [[nodiscard]] bool solves(const PlanarTask& task, const Eigen::VectorXd& start) const {
+  [[nodiscard]] SolveOutcome solve(const PlanarTask& task, const Eigen::VectorXd& start) const {
     BlockList blocks;
     add_takeoff(model_, task, layout_, blocks);
     add_flight(model_, task, layout_, blocks);
     add_landing(model_, task, layout_, blocks);
-    const SolveOutcome outcome = solve_with_ipopt(
-        {layout_.size(), std::move(blocks)}, decision_bounds(model_, task, layout_),
-        decision_sizes(layout_), {start}, {model_.config.iterations_max, model_.config.tolerance});
-    return outcome.status == SolveStatus::solved && outcome.violation < 1e-3;
+    return solve_with_ipopt({layout_.size(), std::move(blocks)},
+                            decision_bounds(model_, task, layout_), decision_sizes(layout_),
+                            {start}, {model_.config.iterations_max, model_.config.tolerance});
   }
 
   model::RobotParameters robot_;
@@ -105,12 +102,10 @@ std::vector<Entry> candidates(StartKind start) {
   return all;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int reach(const std::string& only) {
   const Grid grid(std::filesystem::path(HOPSCOTCH_SOURCE_DIR) / "config");
   for (const StartKind start : {StartKind::stand, StartKind::low, StartKind::moving}) {
-    if (argc > 1 && argv[1] != start_kind_name(start)) continue;
+    if (!only.empty() && only != start_kind_name(start)) continue;
     for (const Entry& entry : candidates(start)) {
       if (!grid.is_reachable(entry)) continue;
       std::printf("%.3f,%.2f,%s\n", entry.distance, entry.height,
@@ -119,4 +114,29 @@ int main(int argc, char** argv) {
     }
   }
   return EXIT_SUCCESS;
+}
+
+int choose(std::size_t wanted) {
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(std::cin, line);) lines.push_back(line);
+  if (lines.size() < wanted) {
+    std::fprintf(stderr, "planner_grid: only %zu targets are reachable\n", lines.size());
+    return EXIT_FAILURE;
+  }
+  std::sort(lines.begin(), lines.end());
+  std::printf("distance_m,height_m,start\n");
+  for (std::size_t i = 0; i < wanted; ++i) {
+    std::printf("%s\n", lines[i * lines.size() / wanted].c_str());
+  }
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string what = argc > 1 ? argv[1] : "";
+  if (what == "reach") return reach(argc > 2 ? argv[2] : "");
+  if (what == "choose" && argc == 3) return choose(std::strtoul(argv[2], nullptr, 10));
+  std::fprintf(stderr, "usage: planner_grid reach [START] | planner_grid choose N\n");
+  return EXIT_FAILURE;
 }
