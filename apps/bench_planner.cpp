@@ -35,7 +35,7 @@ struct BenchTarget {
   planner::StartKind start = planner::StartKind::stand;
 };
 
-/// The published grid; `planner_grid` made it.
+/// The published set of reachable targets; `planner_grid` made it.
 std::vector<BenchTarget> read_targets() {
   const std::filesystem::path path = config_directory() / "bench" / "planner_targets.csv";
   std::ifstream file(path);

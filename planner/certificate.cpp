@@ -20,31 +20,20 @@ constexpr double kFlightEnds = 0.2;  // share of the flight near the ground at e
 /// so far below it without touching the ground [m].
 constexpr double kTerrainAllowance = 12e-3;
 
-enum Check : std::size_t {
-  kHipTorque,
-  kKneeTorque,
-  kAnkleTorque,
-  kHipLine,
-  kKneeLine,
-  kAnkleLine,
-  kHipPower,
-  kKneePower,
-  kAnklePower,
-  kHipSpeed,
-  kKneeSpeed,
-  kAnkleSpeed,
-  kHipRange,
-  kKneeRange,
-  kAnkleRange,
-  kNormalForce,
-  kFriction,
-  kToePressure,
-  kHeelPressure,
-  kToeClearance,
-  kHeelClearance,
-  kKneeClearance,
-  kChecks
-};
+// Checks by number; those of motors and joints run hip, knee, ankle.
+constexpr std::size_t kHipTorque = 0;
+constexpr std::size_t kHipLine = 3;
+constexpr std::size_t kHipPower = 6;
+constexpr std::size_t kHipSpeed = 9;
+constexpr std::size_t kHipRange = 12;
+constexpr std::size_t kNormalForce = 15;
+constexpr std::size_t kFriction = 16;
+constexpr std::size_t kToePressure = 17;
+constexpr std::size_t kHeelPressure = 18;
+constexpr std::size_t kToeClearance = 19;
+constexpr std::size_t kHeelClearance = 20;
+constexpr std::size_t kKneeClearance = 21;
+constexpr std::size_t kChecks = 22;
 constexpr std::array<std::string_view, kChecks> kNames{"hip torque",
                                                        "knee torque",
                                                        "ankle torque",

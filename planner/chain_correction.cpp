@@ -52,17 +52,16 @@ class StepLimits {
                    std::span(upper_).subspan<MotorRows::kRows>());
   }
 
-  /// @param time Since the start [s].
-  void note(core::JumpPhase phase, double time, const LinkState& links,
-            const LinkArray<double>& acceleration, const model::PlanarJoints<double>& tau,
-            Excess& excess) const {
+  /// @param now An instant of the step as a knot.
+  void note(const PlanarKnot& now, const model::PlanarJoints<double>& tau, Excess& excess) const {
+    const LinkState& links = now.links;
     std::array<double, ChainLayout::kStanceRows> row{};
     motors_.write(tau, links.rate, LinkArray<double>{}, row.data());
     std::size_t rows = MotorRows::kRows;
-    if (phase == core::JumpPhase::flight) {
-      note_terrain(time, links.pitch, excess);
+    if (now.phase == core::JumpPhase::flight) {
+      note_terrain(now.time, links.pitch, excess);
     } else {
-      ground_.write(model_.dynamics.stance_loads(links.pitch, links.rate, acceleration),
+      ground_.write(model_.dynamics.stance_loads(links.pitch, links.rate, now.acceleration),
                     row.data() + MotorRows::kRows);
       rows = row.size();
     }
@@ -119,10 +118,11 @@ LinkState integrate_step(const PlanarModel& model, const PlanarKnot& knot,
   };
   const int substeps = static_cast<int>(std::ceil(knot.dt / kStepMax));
   const double h = knot.dt / substeps;
-  LinkState state = knot.links;
+  PlanarKnot now = knot;
+  LinkState& state = now.links;
   for (int i = 0; i < substeps; ++i) {
-    const LinkArray<double> a0 = acceleration(state);
-    limits.note(knot.phase, knot.time + i * h, state, a0, tau, excess);
+    const LinkArray<double> a0 = now.acceleration = acceleration(state);
+    limits.note(now, tau, excess);
     const LinkState first = advanced(state, state.rate, a0, 0.5 * h);
     const LinkArray<double> a1 = acceleration(first);
     const LinkState second = advanced(state, first.rate, a1, 0.5 * h);
@@ -131,8 +131,10 @@ LinkState integrate_step(const PlanarModel& model, const PlanarKnot& knot,
     const LinkArray<double> a3 = acceleration(third);
     state = advanced(state, mean(state.rate, first.rate, second.rate, third.rate),
                      mean(a0, a1, a2, a3), h);
+    now.time += h;
   }
-  limits.note(knot.phase, knot.time + knot.dt, state, acceleration(state), tau, excess);
+  now.acceleration = acceleration(state);
+  limits.note(now, tau, excess);
   return state;
 }
 
