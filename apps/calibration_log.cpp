@@ -21,7 +21,7 @@ namespace {
 constexpr int kPixelStep = 24;
 
 /// Soles that are tilted by more have their heels off the ground [rad].
-constexpr double kSoleTiltMax = 0.03;
+constexpr double kSoleTiltMax = 0.015;
 
 /// A trunk slower than this stands: its soles rest flat on the ground.
 constexpr double kStandingSpeed = 0.05;         // [m/s]

@@ -32,6 +32,21 @@ void set_height(float height, float variance, core::TerrainCell& cell) {
   cell.state = CellState::observed;
 }
 
+struct Blend {
+  float gain = 0.0F;          ///< Weight of the new measurement.
+  float own_variance = 0.0F;  ///< Left of what frames do not share [m^2].
+};
+
+/// Frames average out what is their own error; what they share stays.
+Blend blend_of(const core::TerrainCell& cell, const HeightMeasurement& measurement) {
+  constexpr float kGainMin = 1.0F / 32.0F;  // the map keeps following the ground
+  const float own = measurement.variance - measurement.shared_variance;
+  const float known =
+      std::max(cell.variance - measurement.shared_variance, kGainMin * own / (1.0F - kGainMin));
+  const float gain = known + own > 0.0F ? known / (known + own) : 0.5F;
+  return {.gain = gain, .own_variance = (1.0F - gain) * known};
+}
+
 /// Counts frames that agree on a height which is not the cell's.
 void follow_rival(const MapperConfig& config, const HeightMeasurement& measurement,
                   CellMemory& memory) {
@@ -58,10 +73,9 @@ void fuse_height(const MapperConfig& config, const HeightMeasurement& measuremen
     const float total = cell.variance + measurement.variance;
     const float gate = static_cast<float>(config.gate_sigmas * config.gate_sigmas) * total;
     if (innovation * innovation <= gate) {
-      const float gain = cell.variance / total;
-      const float variance = (1.0F - gain) * cell.variance;
-      set_height(cell.height + gain * innovation, std::max(variance, measurement.shared_variance),
-                 cell);
+      const Blend blend = blend_of(cell, measurement);
+      set_height(cell.height + blend.gain * innovation,
+                 blend.own_variance + measurement.shared_variance, cell);
       settle(memory);
       return;
     }

@@ -18,6 +18,8 @@ using core::CellState;
 
 /// Standard deviation given to bridged cells [m]: more than any foothold may have.
 constexpr double kBridgedSigma = 0.02;
+/// A single recording is not dense enough for smaller cells [m].
+constexpr double kCellMin = 0.015;
 constexpr int kBridgeMax = 2;            // [cells]
 constexpr double kBridgeStep = 0.010;    // most that the rims of a hole may differ [m]
 constexpr int kNeighbourhood = 4;        // half width over which density is compared [cells]
@@ -29,7 +31,7 @@ constexpr double kSectorAngle = 0.0035;  // of azimuth, in which points lie behi
 
 core::TerrainMap empty_map(const MapperConfig& config, const MapArea& area) {
   core::TerrainMap map;
-  map.resolution = config.resolution;
+  map.resolution = std::max(config.resolution, kCellMin);
   map.origin_x = std::floor(area.from_x / map.resolution) * map.resolution;
   map.origin_y = -std::ceil(area.half_width / map.resolution) * map.resolution;
   map.size_x = static_cast<int>(std::ceil((area.to_x - map.origin_x) / map.resolution));

@@ -10,13 +10,13 @@ namespace hopscotch::perception {
 
 namespace {
 
-constexpr double kLineSpacing = 0.01;  // across the tracks, finer than a cell [m]
-constexpr double kStride = 0.0025;     // along a line [m]
-constexpr double kInside = 0.06;       // a search begins so far within the tread [m]
-constexpr double kBeyond = 0.06;       // and goes on so far behind the last tread [m]
-constexpr double kHoleMax = 0.03;      // a longer stretch without support ends a tread [m]
-constexpr double kSameLevel = 0.02;    // cells farther from the tread's height are not its own [m]
-constexpr std::size_t kLinesMin = 6;   // fewer are no edge across the tracks
+constexpr double kLineSpacing = 0.0075;  // across the tracks, finer than a cell [m]
+constexpr double kStride = 0.0025;       // along a line [m]
+constexpr double kInside = 0.06;         // a search begins so far within the tread [m]
+constexpr double kBeyond = 0.06;         // and goes on so far behind the last tread [m]
+constexpr double kHoleMax = 0.03;        // a longer stretch without support ends a tread [m]
+constexpr double kSameLevel = 0.02;   // cells farther from the tread's height are not its own [m]
+constexpr std::size_t kLinesMin = 6;  // fewer are no edge across the tracks
 
 /// One line's answer.
 struct LineEnd {
@@ -124,6 +124,7 @@ std::optional<EdgeLine> line_through(const std::vector<LineEnd>& ends) {
   if (ends.size() < kLinesMin) return std::nullopt;
   const double slope = middle_slope(ends);
   std::vector<double> offsets;
+  offsets.reserve(ends.size());
   for (const LineEnd& end : ends) offsets.push_back(end.x - slope * end.y);
   const double offset = median(offsets);
   for (double& value : offsets) value = std::abs(value - offset);

@@ -1,5 +1,6 @@
 #include "perception/point_bins.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -7,16 +8,16 @@ namespace hopscotch::perception {
 
 namespace {
 
-/// Positions of the grid relative to the camera, in single precision.
-struct RelativeGrid {
-  float x = 0.0F;
-  float y = 0.0F;
-  float cells_per_metre = 0.0F;
-};
+/// Points farther apart than this leave cells between them without one [cells].
+constexpr float kSparseCells = 1.0F;
 
-RelativeGrid relative_grid(const core::TerrainMap& map, const Eigen::Vector3d& p_WC) {
-  return {static_cast<float>(map.origin_x - p_WC.x()), static_cast<float>(map.origin_y - p_WC.y()),
-          static_cast<float>(1.0 / map.resolution)};
+PointBins::RelativeGrid relative_grid(const core::TerrainMap& map, const Eigen::Vector3d& p_WC) {
+  return {.x = static_cast<float>(map.origin_x - p_WC.x()),
+          .y = static_cast<float>(map.origin_y - p_WC.y()),
+          .base_height = static_cast<float>(p_WC.z()),
+          .cells_per_metre = static_cast<float>(1.0 / map.resolution),
+          .size_x = static_cast<float>(map.size_x),
+          .size_y = static_cast<float>(map.size_y)};
 }
 
 /// Ray of a pixel as row_start + column * per_column, with z of C equal to one.
@@ -34,7 +35,33 @@ RowRays row_rays(const PlacedDepth& image, int row) {
   return {row_start.cast<float>(), per_column.cast<float>()};
 }
 
+/// Whether level ground at `p`, relative to the camera, would not have put the next row's pixel so
+/// far ahead on the ground: rows of a far surface lie wider apart than cells.
+bool is_jump(const core::CameraIntrinsics& camera, const Eigen::Vector3f& p, float length_squared) {
+  constexpr float kWider = 1.6F;
+  const float drop = -p.z();
+  if (!(drop > 0.0F)) return true;
+  const float spacing = kWider * p.squaredNorm() / (drop * static_cast<float>(camera.fy));
+  return length_squared > spacing * spacing;
+}
+
 }  // namespace
+
+/// Takes in a point relative to the camera; nothing when it lies outside the grid.
+inline std::optional<std::uint32_t> PointBins::add(const Eigen::Vector3f& p,
+                                                   const RelativeGrid& grid) {
+  const float grid_x = (p.x() - grid.x) * grid.cells_per_metre;
+  const float grid_y = (p.y() - grid.y) * grid.cells_per_metre;
+  if (!(grid_x >= 0.0F && grid_x < grid.size_x)) return std::nullopt;
+  if (!(grid_y >= 0.0F && grid_y < grid.size_y)) return std::nullopt;
+  const int ix = static_cast<int>(grid_x);
+  const int iy = static_cast<int>(grid_y);
+  const std::uint32_t cell = static_cast<std::uint32_t>(iy * static_cast<int>(grid.size_x) + ix);
+  entries_.push_back({cell,
+                      {p.z() + grid.base_height, grid_x - static_cast<float>(ix) - 0.5F,
+                       grid_y - static_cast<float>(iy) - 0.5F}});
+  return cell;
+}
 
 void PointBins::fill(const PlacedDepth& image, const core::TerrainMap& map,
                      const BinningLimits& limits) {
@@ -46,17 +73,7 @@ void PointBins::fill(std::span<const Eigen::Vector3f> points, const core::Terrai
   entries_.clear();
   sight_lines_.clear();
   const RelativeGrid grid = relative_grid(map, Eigen::Vector3d::Zero());
-  for (const Eigen::Vector3f& p : points) {
-    const float grid_x = (p.x() - grid.x) * grid.cells_per_metre;
-    const float grid_y = (p.y() - grid.y) * grid.cells_per_metre;
-    if (!(grid_x >= 0.0F && grid_x < static_cast<float>(map.size_x))) continue;
-    if (!(grid_y >= 0.0F && grid_y < static_cast<float>(map.size_y))) continue;
-    const int ix = static_cast<int>(grid_x);
-    const int iy = static_cast<int>(grid_y);
-    entries_.push_back(
-        {static_cast<std::uint32_t>(iy * map.size_x + ix),
-         {p.z(), grid_x - static_cast<float>(ix) - 0.5F, grid_y - static_cast<float>(iy) - 0.5F}});
-  }
+  for (const Eigen::Vector3f& p : points) static_cast<void>(add(p, grid));
   sort_by_cell(map.cells.size());
 }
 
@@ -68,8 +85,8 @@ void PointBins::project(const PlacedDepth& image, const core::TerrainMap& map,
   const RelativeGrid grid = relative_grid(map, image.X_WC.translation());
   const Eigen::Vector2f ahead = limits.ahead.cast<float>();
   const float lateral_max = static_cast<float>(limits.lateral_max);
-  const float camera_height = static_cast<float>(image.X_WC.translation().z());
   const float hidden_squared = static_cast<float>(limits.hidden_length * limits.hidden_length);
+  const float sparse = kSparseCells * static_cast<float>(map.resolution);
 
   entries_.clear();
   sight_lines_.clear();
@@ -83,24 +100,33 @@ void PointBins::project(const PlacedDepth& image, const core::TerrainMap& map,
       const Eigen::Vector3f p =
           depth[column] * (rays.row_start + static_cast<float>(column) * rays.per_column);
       if (!(std::abs(ahead.x() * p.y() - ahead.y() * p.x()) <= lateral_max)) continue;
-      const float grid_x = (p.x() - grid.x) * grid.cells_per_metre;
-      const float grid_y = (p.y() - grid.y) * grid.cells_per_metre;
-      if (!(grid_x >= 0.0F && grid_x < static_cast<float>(map.size_x))) continue;
-      if (!(grid_y >= 0.0F && grid_y < static_cast<float>(map.size_y))) continue;
-      const int ix = static_cast<int>(grid_x);
-      const int iy = static_cast<int>(grid_y);
-      const std::uint32_t cell = static_cast<std::uint32_t>(iy * map.size_x + ix);
-      entries_.push_back({cell,
-                          {p.z() + camera_height, grid_x - static_cast<float>(ix) - 0.5F,
-                           grid_y - static_cast<float>(iy) - 0.5F}});
-
+      const std::optional<std::uint32_t> cell = add(p, grid);
+      if (!cell) continue;
       SightLine& previous = previous_[static_cast<std::size_t>(column)];
-      if ((p - previous.near).head<2>().squaredNorm() > hidden_squared) {
+      const float length_squared = (p - previous.near).head<2>().squaredNorm();
+      if (length_squared > hidden_squared && is_jump(image.intrinsics, p, length_squared)) {
         sight_lines_.push_back({previous.near, p, previous.near_cell});
+      } else if (length_squared > sparse * sparse) {
+        add_between(previous.near, p, grid);
       }
       previous.near = p;
-      previous.near_cell = cell;
+      previous.near_cell = *cell;
     }
+  }
+}
+
+/// Where rows of one surface lie wider apart than cells, the cells between get what lies between.
+void PointBins::add_between(const Eigen::Vector3f& near, const Eigen::Vector3f& far,
+                            const RelativeGrid& grid) {
+  constexpr float kSameSurface = 0.01F;  // [m]
+  constexpr int kMost = 6;
+  const Eigen::Vector3f step = far - near;
+  if (!(std::abs(step.z()) <= kSameSurface)) return;
+  constexpr float kPiecesPerCell = 1.5F;
+  const float cells = step.head<2>().norm() * grid.cells_per_metre;
+  const int pieces = std::min(kMost, static_cast<int>(kPiecesPerCell * cells) + 1);
+  for (int i = 1; i < pieces; ++i) {
+    static_cast<void>(add(near + static_cast<float>(i) / static_cast<float>(pieces) * step, grid));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,7 +46,8 @@ struct BinningLimits {
   double lateral_max = 0.0;      ///< To either side of it [m].
   int column_step = 1;           ///< Use every so many columns.
   int near_row_step = 1;  ///< Use every so many rows of the lower half, where pixels lie densely.
-  double hidden_length = 0.0;  ///< Longer jumps on the ground become sight lines [m].
+  double hidden_length = 0.0;  ///< Longer jumps on the ground become sight lines [m], unless the
+                               ///< rows of a level surface would lie so far apart.
 };
 
 /// The points of one frame, sorted by map cell. Keeps its memory between frames.
@@ -66,12 +68,25 @@ class PointBins {
   }
   [[nodiscard]] const std::vector<SightLine>& sight_lines() const { return sight_lines_; }
 
+  /// The grid as it lies to the camera, in single precision.
+  struct RelativeGrid {
+    float x = 0.0F;  ///< Lower corner [m].
+    float y = 0.0F;
+    float base_height = 0.0F;  ///< Of the camera, in W [m].
+    float cells_per_metre = 0.0F;
+    float size_x = 0.0F;  ///< [cells]
+    float size_y = 0.0F;
+  };
+
  private:
   struct Entry {
     std::uint32_t cell;
     MapPoint point;
   };
   void project(const PlacedDepth& image, const core::TerrainMap& map, const BinningLimits& limits);
+  std::optional<std::uint32_t> add(const Eigen::Vector3f& p, const RelativeGrid& grid);
+  void add_between(const Eigen::Vector3f& near, const Eigen::Vector3f& far,
+                   const RelativeGrid& grid);
   void sort_by_cell(std::size_t map_cells);
 
   std::vector<Entry> entries_;

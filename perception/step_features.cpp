@@ -156,7 +156,9 @@ void list_break(const OneStepConfig& config, const Break& found, core::OneStepTe
   if (found.start - found.end >= config.gap_min) {
     add(found.end, EdgeKind::gap_near);
     add(found.start, EdgeKind::gap_far);
-    add_gap(terrain, {found.end, found.start, std::sqrt(2.0) * edge.sigma});
+    // A gap that is wider than told costs a fall: both ends are told a standard deviation outwards.
+    add_gap(terrain,
+            {found.end - edge.sigma, found.start + edge.sigma, std::sqrt(2.0) * edge.sigma});
   } else if (edge.step >= config.step_min) {
     add(found.start, EdgeKind::up);  // the riser's top
   } else if (edge.step <= -config.step_min) {

@@ -1,5 +1,6 @@
 #include "perception/terrain_mapper.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -79,6 +80,19 @@ ViewOfCell view_of(const Eigen::Vector3d& p_WP, const Eigen::Isometry3d& X_WC) {
           .rise = p_CP_W.z()};
 }
 
+struct PixelSteps {
+  int column = 1;
+  int near_row = 1;
+};
+
+/// The configured steps are for images of 640x480; smaller ones have no pixels to spare.
+PixelSteps pixel_steps(const MapperConfig& config, const core::CameraIntrinsics& camera) {
+  constexpr int kWidth = 640;
+  constexpr int kHeight = 480;
+  return {.column = std::max(1, config.column_step * camera.width / kWidth),
+          .near_row = std::max(1, config.near_row_step * camera.height / kHeight)};
+}
+
 /// Pixels that a level surface all over a cell would get: the solid angle of the cell over that of
 /// a pixel, less the pixels that are not used.
 double expected_points(const MapperConfig& config, const PlacedDepth& image,
@@ -89,8 +103,9 @@ double expected_points(const MapperConfig& config, const PlacedDepth& image,
       camera.fx * camera.fy * area * std::abs(view.rise) / (view.depth * view.depth * view.depth);
   const double down = image.X_WC.linear().col(1).dot(p_WP - image.X_WC.translation());
   const double row = camera.cy + camera.fy * down / view.depth;
-  const int row_step = is_lower_half(camera, row) ? config.near_row_step : 1;
-  return pixels / (config.column_step * row_step);
+  const PixelSteps steps = pixel_steps(config, camera);
+  const int row_step = is_lower_half(camera, row) ? steps.near_row : 1;
+  return pixels / (steps.column * row_step);
 }
 
 /// Takes one reading into its cell.
@@ -210,10 +225,11 @@ MapStatus TerrainMapper::fuse(const core::DepthFrame& frame, const BodyCapsules&
   core::TerrainMap& map = memory_->window.map;
   if (memory_->filter.filter(frame, body, memory_->depth).kept == 0) return MapStatus::blind;
   follow(config_.mapper, window_centre(config_.mapper, X_WB), memory_->window);
+  const PixelSteps steps = pixel_steps(config_.mapper, frame.intrinsics);
   const BinningLimits limits{.ahead = heading_of(X_WB),
                              .lateral_max = config_.mapper.lateral_max,
-                             .column_step = config_.mapper.column_step,
-                             .near_row_step = config_.mapper.near_row_step,
+                             .column_step = steps.column,
+                             .near_row_step = steps.near_row,
                              .hidden_length = kHiddenCells * config_.mapper.resolution};
   const PlacedDepth image{frame.intrinsics, memory_->depth, X_WC};
   memory_->bins.fill(image, map, limits);

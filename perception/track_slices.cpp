@@ -10,7 +10,8 @@ namespace {
 
 using core::CellState;
 
-constexpr double kLateralStep = 0.01;  // finer than a cell, so that none within a track is left out
+constexpr double kLateralStep =
+    0.0075;  // finer than a cell, so that none within a track is left out
 /// A lone wrong cell at either end of the sorted heights does not break a slice.
 constexpr std::size_t kOutliers = 1;
 

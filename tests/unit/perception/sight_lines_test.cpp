@@ -30,13 +30,13 @@ TEST(SightLines, ListsTheCellsBetweenWithTheHeightOfTheRay) {
     EXPECT_GE(under.ray_height, ray_over_centre - 1e-6) << "an upper bound for the whole cell";
     EXPECT_LE(under.ray_height, ray_over_centre + 0.9 * 1.5 * window.map.resolution);
   }
-  const double cells_between = (0.5 - 1.5 * 0.015) / 0.015;  // less the zones at both ends
+  const double cells_between = 0.5 / window.map.resolution - 1.5;  // less the zones at both ends
   EXPECT_NEAR(static_cast<double>(cells.size()), cells_between, 2.0);
 }
 
 TEST(SightLines, NeighbouringPointsHideNothing) {
   const MapWindow window = empty_window(test::perception_config().mapper, {0.0, 0.0});
-  const SightLine line{.near = {0.5F, 0.0F, -0.6F}, .far = {0.52F, 0.0F, -0.6F}};
+  const SightLine line{.near = {0.5F, 0.0F, -0.6F}, .far = {0.514F, 0.0F, -0.6F}};
   std::vector<CellUnderRay> cells{{1, 2.0F}};
   cells_under_ray(window.map, {0.0, 0.0, 0.6}, line, cells);
   EXPECT_TRUE(cells.empty());
