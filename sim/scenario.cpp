@@ -118,6 +118,17 @@ Goal read_goal(const ConfigReader& reader) {
   return goal;
 }
 
+core::TargetOverride read_target(const ConfigReader& reader) {
+  constexpr double kLongest = 1.0;  // [m] more than any jump
+  core::TargetOverride target;
+  target.distance = reader.number("distance_m", Range::above(0.0, kLongest));
+  target.height = reader.number_or("height_m", target.height, Range::closed(-kLongest, kLongest));
+  target.lateral = reader.number_or("lateral_m", 0.0, Range::closed(-kLongest, kLongest));
+  target.yaw = reader.number_or("yaw_rad", 0.0, Range::closed(-M_PI, M_PI));
+  reader.finish();
+  return target;
+}
+
 core::JumpPhase read_phase(const ConfigReader& reader) {
   return static_cast<core::JumpPhase>(reader.choice("phase", {"takeoff", "flight", "landing"}));
 }
@@ -237,6 +248,9 @@ Scenario Scenario::from_reader(const ConfigReader& reader) {
   scenario.seen.slabs = read_slabs(reader, scenario);  // after friction and pit depth
   if (const auto start = reader.section_if("start")) scenario.start = read_start(*start);
   scenario.goal = read_goal(reader);
+  for (const ConfigReader& item : reader.list_if("targets")) {
+    scenario.targets.push_back(read_target(item));
+  }
   read_surprises(reader, scenario);
   scenario.plant.robot = scenario.robot;
   if (const auto plant = reader.section_if("plant")) {

@@ -11,6 +11,7 @@
 
 #include "core/config_reader.hpp"
 #include "core/jump_plan.hpp"
+#include "core/operator_command.hpp"
 #include "sim/camera_settings.hpp"
 #include "sim/terrain.hpp"
 
@@ -69,6 +70,8 @@ struct Scenario {
   Terrain seen;                  ///< What perception is shown.
   StartPlace start;
   Goal goal;
+  /// Where the first jumps are to land, one each; the robot chooses the others.
+  std::vector<core::TargetOverride> targets;
   std::vector<HeightSurprise> height_surprises;
   std::vector<Push> pushes;
   PlantSetup plant;

@@ -32,6 +32,8 @@ const Size kRise{"rise_m", Range::closed(-0.4, 0.4), 0.10};
 const Size kTread{"tread_m", Range::closed(0.16, 10.0), 0.35};
 const Size kSlope{"slope_rad", Range::closed(-0.4, 0.4), 0.08};
 const Size kDrop{"drop_m", Range::closed(0.0, 1.0), 0.25};
+const Size kLateral{"lateral_m", Range::closed(-0.3, 0.3), 0.0};
+const Size kYaw{"yaw_rad", Range::closed(-0.5, 0.5), 0.0};
 const Size kJump{"jump_m", Range::closed(0.05, 1.0), 0.40};
 
 struct FamilyRule {
@@ -48,7 +50,7 @@ Size with(Size size, double fallback) {
 
 const std::vector<FamilyRule>& family_rules() {
   static const std::vector<FamilyRule> rules{
-      {Family::flat, "flat", 0, {kJump}},
+      {Family::flat, "flat", 0, {kJump, kLateral, kYaw}},
       {Family::leap, "leap", 0, {kJump, with(kEdge, 0.13), kStep}},
       {Family::steps, "steps", 6, {kEdge, kStep, with(kTread, 0.40)}},
       {Family::gaps, "gaps", 6, {kEdge, kGap, kTread}},
@@ -164,6 +166,22 @@ sim::Scenario jump_down(const SizeDraw& size) {
   return scenario;
 }
 
+/// Jumps to the side or with a turn are asked for; straight ones the robot chooses itself.
+std::vector<core::TargetOverride> side_targets(const FamilySpec& spec, const SizeDraw& size) {
+  std::vector<core::TargetOverride> targets;
+  bool straight = true;
+  for (int i = 0; i < spec.jumps; ++i) {
+    core::TargetOverride target;
+    target.distance = size("jump_m", i);
+    target.lateral = size("lateral_m", i);
+    target.yaw = size("yaw_rad", i);
+    straight = straight && target.lateral == 0.0 && target.yaw == 0.0;
+    targets.push_back(target);
+  }
+  if (straight) targets.clear();
+  return targets;
+}
+
 sim::Scenario level_ground(const FamilySpec& spec) {
   constexpr double kRoomPerJump = 1.2;  // more than any jump covers [m]
   sim::Scenario scenario;
@@ -218,7 +236,11 @@ FamilySpec read_family(const FactorSection& section, std::vector<Factor>& factor
 sim::Scenario family_scenario(const FamilySpec& family, const SizeDraw& size) {
   sim::Scenario scenario;
   switch (family.family) {
-    case Family::flat: scenario = level_ground(family); break;
+    case Family::flat:
+      scenario = level_ground(family);
+      scenario.targets = side_targets(family, size);
+      if (!scenario.targets.empty()) scenario.seen.slabs[0].half_size.y() += kLastTread;
+      break;
     case Family::leap: scenario = leap(size); break;
     case Family::jump_down: scenario = jump_down(size); break;
     case Family::drops: scenario = drop(size); break;

@@ -62,6 +62,17 @@ std::string plant_text(const sim::PlantSetup& plant) {
          ", sensor_noise: " + exact_text(plant.sensor_noise) + "}\n";
 }
 
+std::string targets_text(const std::vector<core::TargetOverride>& targets) {
+  std::string text = targets.empty() ? "" : "targets:\n";
+  for (const core::TargetOverride& target : targets) {
+    text += "  - {distance_m: " + exact_text(target.distance);
+    if (std::isfinite(target.height)) text += ", height_m: " + exact_text(target.height);
+    text += ", lateral_m: " + exact_text(target.lateral) + ", yaw_rad: " + exact_text(target.yaw) +
+            "}\n";
+  }
+  return text;
+}
+
 std::string surprises_text(const sim::Scenario& scenario) {
   if (scenario.height_surprises.empty() && scenario.pushes.empty()) return "";
   std::string text = "surprises:\n";
@@ -86,7 +97,8 @@ std::string scenario_text(const sim::Scenario& scenario) {
           ", drop_m: " + exact_text(scenario.start.drop) + "}\n";
   text += scenario.goal.jumps ? "goal: {jumps: " + std::to_string(*scenario.goal.jumps) + "}\n"
                               : "goal: {x_m: " + exact_text(scenario.goal.x.value()) + "}\n";
-  return text + surprises_text(scenario) + plant_text(scenario.plant);
+  return text + targets_text(scenario.targets) + surprises_text(scenario) +
+         plant_text(scenario.plant);
 }
 
 }  // namespace hopscotch::apps::campaign

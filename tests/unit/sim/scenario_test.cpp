@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <ostream>
 #include <string>
@@ -246,6 +247,19 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Scenario, AMissingFileIsNamed) {
   EXPECT_THAT([] { static_cast<void>(Scenario::load("no-such-folder/none.yaml")); },
               testing::ThrowsMessage<core::ConfigError>("no-such-folder/none.yaml: no such file"));
+}
+
+TEST(Scenario, TargetsOfTheFirstJumpsAreRead) {
+  const Scenario s = parse(
+      "name: turn\nslabs:\n  - {x_m: [-1, 2]}\ntargets:\n"
+      "  - {distance_m: 0.3, lateral_m: -0.1, yaw_rad: 0.2}\n  - {distance_m: 0.4, height_m: "
+      "0.0}\n");
+  ASSERT_EQ(s.targets.size(), 2U);
+  EXPECT_DOUBLE_EQ(s.targets[0].distance, 0.3);
+  EXPECT_DOUBLE_EQ(s.targets[0].lateral, -0.1);
+  EXPECT_DOUBLE_EQ(s.targets[0].yaw, 0.2);
+  EXPECT_TRUE(std::isnan(s.targets[0].height));
+  EXPECT_DOUBLE_EQ(s.targets[1].height, 0.0);
 }
 
 TEST(Scenario, EveryFileThatWeShipIsValid) {
