@@ -9,7 +9,11 @@ JointGains JointGains::load(const core::ConfigReader& section) {
   gains.kp = section.vector<core::kJointsPerLeg>("kp_Nm_rad", Range::closed(0.0, 500.0));
   gains.kd = section.vector<core::kJointsPerLeg>("kd_Nms_rad", Range::closed(0.0, 5.0));
   gains.compliant_scale = section.number("compliant_scale", Range::closed(0.0, 1.0));
+  gains.fallback_scale = section.number("fallback_scale", Range::closed(0.0, 1.0));
   gains.flight_share = section.number("flight_share", Range::closed(0.0, 3.0));
+  gains.placement_time = section.number("placement_time_s", Range::closed(0.0, 0.5));
+  gains.placement_dead = section.number("placement_dead_mps", Range::not_negative());
+  gains.placement_max = section.number("placement_max_m", Range::closed(0.0, 0.15));
   section.finish();
   return gains;
 }
@@ -26,6 +30,7 @@ SupervisorConfig SupervisorConfig::load(const core::ConfigReader& section) {
   config.fall_time = section.number("fall_time_s", Range::above(0.0, 1.0));
   config.rest_speed = section.number("rest_speed_mps", Range::positive());
   config.rest_rate = section.number("rest_rate_rad_s", Range::positive());
+  config.stray_max = section.number("stray_max_m", Range::positive());
   config.commit_speed = section.number("commit_speed_mps", Range::closed(0.0, 1.0));
   section.finish();
   return config;

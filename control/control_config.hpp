@@ -14,7 +14,11 @@ struct JointGains {
   core::LegVector kp;            ///< [N·m/rad]
   core::LegVector kd;            ///< [N·m·s/rad]
   double compliant_scale = 0.0;  ///< Factor on both where the MPC bears the load (landing, stand).
+  double fallback_scale = 0.0;   ///< The same once the MPC has no fresh answer.
   double flight_share = 0.0;     ///< Of the trunk's deviation in flight that the hips take up.
+  double placement_time = 0.0;   ///< Feet go so much further per excess speed of the CoM [s].
+  double placement_dead = 0.0;   ///< Smaller deviations of that speed are left to the MPC [m/s].
+  double placement_max = 0.0;    ///< Of the feet beside their planned place [m].
 
   static JointGains load(const core::ConfigReader& section);
 };
@@ -31,6 +35,7 @@ struct SupervisorConfig {
   double fall_time = 0.0;     ///< Standing with both feet unloaded for so long is falling [s].
   double rest_speed = 0.0;    ///< Of the trunk; slower is at rest [m/s].
   double rest_rate = 0.0;     ///< Of the trunk; slower is at rest [rad/s].
+  double stray_max = 0.0;     ///< Of the capture point in a crouch; beyond, the jump is off [m].
   double commit_speed = 0.0;  ///< Planned rise of the CoM from which a jump must go on [m/s].
 
   static SupervisorConfig load(const core::ConfigReader& section);

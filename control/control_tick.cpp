@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "control/torque_law.hpp"
+#include "model/gravity.hpp"
 #include "model/kinematics.hpp"
 #include "model/knot_state.hpp"
 #include "model/rigid_body.hpp"
@@ -16,6 +18,25 @@ namespace {
 
 Eigen::Vector3d mid_sole(const std::array<Eigen::Isometry3d, core::kLegs>& X_WF) {
   return 0.5 * (X_WF[0].translation() + X_WF[1].translation());
+}
+
+/// Mid-point of the soles once they lie flat: shortly after touchdown a foot may still stand on its
+/// heel or toe, and turns down about it.
+Eigen::Vector3d mid_sole_laid(const model::RobotParameters& robot,
+                              const std::array<Eigen::Isometry3d, core::kLegs>& X_WF) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Isometry3d& sole : X_WF) {
+    const model::SoleTips tips = model::sole_tips(robot, sole);
+    const Eigen::Vector3d along = tips.toe - tips.heel;
+    const Eigen::Vector3d level =
+        along.norm() * Eigen::Vector3d(along.x(), along.y(), 0.0).normalized();
+    if (along.z() > 0.0) {
+      middle += 0.5 * (tips.heel + 0.5 * level);
+    } else {
+      middle += 0.5 * (tips.toe - 0.5 * level);
+    }
+  }
+  return middle;
 }
 
 std::array<Eigen::Vector3d, core::kLegs> centres(
@@ -44,6 +65,35 @@ core::RobotState extrapolate(const core::RobotState& state, double delay, const 
   if (angle > 0.0) later.R_WB = Eigen::AngleAxisd(angle, turn / angle) * state.R_WB;
   later.q += 0.5 * delay * (state.dq + later.dq);
   return later;
+}
+
+/// What exceeds `dead` of a deviation.
+double beyond(double deviation, double dead) {
+  return std::copysign(std::max(0.0, std::abs(deviation) - dead), deviation);
+}
+
+/// A CoM that flies faster than planned, after a push or a slip, needs the feet further on when it
+/// lands: by the speed times the time constant of the pendulum it then is. The legs turn about the
+/// hips, the ankles keep the soles level.
+/// @param planned Where the body should be now.
+void place_feet(const JointGains& gains, const model::RobotParameters& robot,
+                const core::RobotState& state, const core::JumpKnot& planned,
+                core::JointVector& q) {
+  const Eigen::AngleAxisd in_S(-planned.rpy.z(), Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d excess = in_S * (model::composite_body(robot, state).v_WG - planned.v_WG);
+  const double length =
+      planned.p_WB.z() - mid_sole(model::sole_poses(robot, model::state_of(planned))).z();
+  const auto angle = [&](double speed) {
+    const double shift = gains.placement_time * beyond(speed, gains.placement_dead);
+    return std::clamp(shift, -gains.placement_max, gains.placement_max) / length;
+  };
+  const double forward = angle(excess.x());
+  const double left = angle(excess.y());
+  for (const core::Leg leg : core::kAllLegs) {
+    q[core::joint_index(leg, core::Joint::hip_pitch)] -= forward;
+    q[core::joint_index(leg, core::Joint::ankle)] += forward;
+    q[core::joint_index(leg, core::Joint::hip_roll)] += left;
+  }
 }
 
 }  // namespace
@@ -111,7 +161,7 @@ void ControlTick::follow_feet(const core::RobotState& state) noexcept {
   if (state.stamp.since(touchdown_) > config_.anchor_time) return;
   const auto soles = model::sole_poses(robot_, state);
   placement_.landing = {
-      mid_sole(soles) - planned_mid_sole(robot_, plan_.knots[plan_.knot_count - 1]),
+      mid_sole_laid(robot_, soles) - planned_mid_sole(robot_, plan_.knots[plan_.knot_count - 1]),
       centres(soles)};
 }
 
@@ -174,9 +224,25 @@ void ControlTick::observe_drives(const core::SensorReadings& readings) noexcept 
 }
 
 core::JointCommand ControlTick::tick(const core::RobotState& state) noexcept {
+  const double elapsed = started_ ? state.stamp.since(state_.stamp) : 0.0;
+  const std::uint64_t stale_before = stale_ticks_;
   core::JointCommand command = next_command(state);
+  unanswered_for_ = stale_ticks_ > stale_before ? unanswered_for_ + elapsed : 0.0;
   delays_.sent(command);
   return command;
+}
+
+/// How far the capture point, where the CoM would come to rest, is from the plan's, in the ground
+/// plane [m].
+double ControlTick::stray(const core::RobotState& state, double body_time) const noexcept {
+  const core::JumpKnot planned = sample_plan(plan_, body_time);
+  const model::CompositeBody body = model::composite_body(robot_, state);
+  const double height =
+      body.p_WG.z() - 0.5 * (placement_.takeoff.soles[0].z() + placement_.takeoff.soles[1].z());
+  const double time = std::sqrt(std::max(height, 0.0) / model::kGravity);
+  const Eigen::Vector3d off =
+      body.p_WG - planned.p_WG - placement_.takeoff.shift + time * (body.v_WG - planned.v_WG);
+  return off.head<2>().norm();
 }
 
 core::JointCommand ControlTick::next_command(const core::RobotState& state) noexcept {
@@ -185,7 +251,13 @@ core::JointCommand ControlTick::next_command(const core::RobotState& state) noex
   state_ = state;
   if (has_next_ && phase() == RobotPhase::stand) begin_next(state);
   const double body_time = command_time(state.stamp) - config_.actuation_delay;
-  supervisor_.update(state, plan_, body_time);
+  const bool crouching = phase() == RobotPhase::crouch;
+  if (crouching && stray(state, body_time) > config_.supervisor.stray_max &&
+      supervisor_.call_off()) {
+    has_next_ = false;
+    settle(state, config_.settle_time);
+  }
+  supervisor_.update(state, plan_, command_time(state.stamp) - config_.actuation_delay);
   enter_phase(state);
   settle_again(state);
   if (phase() == RobotPhase::landing || core::is_standing(phase())) follow_feet(state);
@@ -209,6 +281,12 @@ core::JointCommand ControlTick::next_command(const core::RobotState& state) noex
   return command;
 }
 
+double ControlTick::joint_scale() const noexcept {
+  if (phase() != RobotPhase::landing && !core::is_standing(phase())) return 1.0;
+  const bool answered = unanswered_for_ <= config_.wrench_age_max;
+  return answered ? config_.gains.compliant_scale : config_.gains.fallback_scale;
+}
+
 void ControlTick::set_joint_targets(const core::RobotState& state,
                                     core::JointCommand& command) const noexcept {
   double time = command_time(state.stamp);
@@ -216,8 +294,7 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
     time = is_falling_ ? plan_.duration : std::min(time, plan_.touchdown_time);
   }
   const core::JumpKnot planned = sample_plan(plan_, time);
-  const bool compliant = phase() == RobotPhase::landing || core::is_standing(phase());
-  const double scale = compliant ? config_.gains.compliant_scale : 1.0;
+  const double scale = joint_scale();
   command.q = planned.q;
   command.dq = planned.dq;
   // The ground is late: wait in the touchdown posture instead of yielding to a ground that is not
@@ -237,6 +314,7 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
     command.q[core::joint_index(leg, core::Joint::ankle)] -= (1.0 - share) * pitch;
     command.q[core::joint_index(leg, core::Joint::hip_roll)] -= rpy.x() - now.rpy.x();
   }
+  if (!is_falling_) place_feet(config_.gains, robot_, state, now, command.q);
 }
 
 ContactExpectation ControlTick::expected_contact() const noexcept {
@@ -283,15 +361,18 @@ void ControlTick::push_off(const core::RobotState& state, const core::JumpKnot& 
   command.tau += contact_torques(robot_, state, deviation);
 }
 
-/// The MPC's wrenches and the legs' own weight.
-void ControlTick::bear_load(const core::RobotState& state, core::JointCommand& command) noexcept {
-  command.tau = leg_weight_torques(robot_, state);
-  if (!answer_is_fresh() || answer_.form != MpcForm::full) {
-    ++stale_ticks_;
-    return;
-  }
-  status_.wrenches = answer_.wrenches;
-  command.tau += contact_torques(robot_, state, answer_.wrenches);
+/// The MPC's wrenches and the legs' own weight; without the MPC what the plan would have.
+void ControlTick::bear_load(const core::RobotState& state, const core::JumpKnot& planned,
+                            core::JointCommand& command) noexcept {
+  const bool answered = answer_is_fresh() && answer_.form == MpcForm::full;
+  if (!answered) ++stale_ticks_;
+  status_.wrenches = answered ? answer_.wrenches : planned.wrenches;
+  command.tau =
+      leg_weight_torques(robot_, state) + contact_torques(robot_, state, status_.wrenches);
+}
+
+void ControlTick::answer(const MpcAnswer& answer) noexcept {
+  if (answer.status == MpcStatus::solved) answer_ = answer;
 }
 
 void ControlTick::set_feed_forward(const core::RobotState& state,
@@ -301,7 +382,7 @@ void ControlTick::set_feed_forward(const core::RobotState& state,
   switch (phase()) {
     case RobotPhase::crouch:
     case RobotPhase::takeoff:
-      if (takeoff_form() == MpcForm::full) return bear_load(state, command);
+      if (takeoff_form() == MpcForm::full) return bear_load(state, planned, command);
       return push_off(state, planned, command);
     case RobotPhase::flight:
       if (time <= plan_.touchdown_time) command.tau = planned.tau;
@@ -309,7 +390,7 @@ void ControlTick::set_feed_forward(const core::RobotState& state,
     case RobotPhase::landing:
     case RobotPhase::recover:
     case RobotPhase::hold:
-    case RobotPhase::stand: return bear_load(state, command);
+    case RobotPhase::stand: return bear_load(state, planned, command);
     case RobotPhase::damp:
     case RobotPhase::fault: return;
   }

@@ -86,7 +86,9 @@ class ControlTick {
   [[nodiscard]] core::RobotState rest_state() const noexcept;
   /// Fills the question for the state of the last tick; `reference.horizon` is an input.
   void question(MpcQuestion& out) const noexcept;
-  void answer(const MpcAnswer& answer) noexcept { answer_ = answer; }
+  /// A failed solve changes nothing: the last good answer counts for as long as it is fresh, then
+  /// the plan's own wrenches with stiffer joints.
+  void answer(const MpcAnswer& answer) noexcept;
 
   [[nodiscard]] core::RobotPhase phase() const { return supervisor_.phase(); }
   [[nodiscard]] bool has_next() const { return has_next_; }
@@ -109,7 +111,10 @@ class ControlTick {
   void set_feed_forward(const core::RobotState& state, core::JointCommand& command) noexcept;
   void push_off(const core::RobotState& state, const core::JumpKnot& planned,
                 core::JointCommand& command) noexcept;
-  void bear_load(const core::RobotState& state, core::JointCommand& command) noexcept;
+  void bear_load(const core::RobotState& state, const core::JumpKnot& planned,
+                 core::JointCommand& command) noexcept;
+  [[nodiscard]] double joint_scale() const noexcept;
+  [[nodiscard]] double stray(const core::RobotState& state, double body_time) const noexcept;
   [[nodiscard]] MpcForm takeoff_form() const noexcept;
   [[nodiscard]] bool answer_is_fresh() const noexcept;
 
@@ -133,6 +138,7 @@ class ControlTick {
   MpcAnswer answer_;
   core::ControlStatus status_;
   std::uint64_t stale_ticks_ = 0;
+  double unanswered_for_ = 0.0;  ///< Load has been borne without a fresh answer for so long [s].
 };
 
 }  // namespace hopscotch::control

@@ -109,6 +109,12 @@ void JumpSupervisor::begin_jump(const core::JumpPlan& plan) noexcept {
   phase_ = RobotPhase::crouch;
 }
 
+bool JumpSupervisor::call_off() noexcept {
+  if (phase_ != RobotPhase::crouch) return false;
+  phase_ = RobotPhase::landing;
+  return true;
+}
+
 bool JumpSupervisor::hold() noexcept {
   if (core::is_limp(phase_)) return false;
   if (core::is_standing(phase_) || phase_ == RobotPhase::crouch) {

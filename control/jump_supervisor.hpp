@@ -14,6 +14,7 @@ namespace hopscotch::control {
 /// | ---------------------------- | ------- | ----------------------------------------------- |
 /// | stand, landing               | crouch  | a next plan begins                              |
 /// | crouch                       | takeoff | the commit point has passed                     |
+/// | crouch                       | landing | the body has strayed too far from its plan      |
 /// | takeoff                      | flight  | the plan's lift-off time has passed             |
 /// | flight                       | landing | a foot bears load after `touchdown_from` of it  |
 /// | landing                      | stand   | the plan's duration has passed, at rest         |
@@ -45,6 +46,10 @@ class JumpSupervisor {
   /// A new plan begins: the robot leaves `stand` or `landing`. Ignored in every other phase.
   /// @param plan Gives the commit point.
   void begin_jump(const core::JumpPlan& plan) noexcept;
+
+  /// The jump cannot go on: the robot settles where it is, as after a landing. False past the
+  /// commit point, where nothing is changed.
+  [[nodiscard]] bool call_off() noexcept;
 
   /// The operator's wishes; false = refused in this phase.
   [[nodiscard]] bool hold() noexcept;

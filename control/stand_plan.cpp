@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/gravity.hpp"
 #include "model/kinematics.hpp"
 #include "model/rigid_body.hpp"
 
@@ -43,6 +44,10 @@ core::JumpKnot stand_knot(const model::RobotParameters& robot, const core::Robot
   knot.q = target.q;
   knot.dq.setZero();
   knot.tau.setZero();
+  for (core::Wrench& wrench : knot.wrenches) {
+    wrench.force = {0.0, 0.0, 0.5 * model::kGravity * robot.total_mass()};
+    wrench.moment.setZero();
+  }
   return knot;
 }
 

@@ -6,77 +6,15 @@
 #include "core/allocation_count.hpp"
 #include "model/kinematics.hpp"
 #include "model/rigid_body.hpp"
-#include "tests/unit/control/fake_plan.hpp"
+#include "tests/unit/control/control_tick_fixture.hpp"
 
 namespace hopscotch::control {
 namespace {
 
 using core::RobotPhase;
-
-constexpr double kActuationDelay = 0.002;
-
-ControlConfig test_config() {
-  ControlConfig config;
-  config.gains.kp << 150, 150, 150, 150, 100;
-  config.gains.kd << 2, 2, 2, 2, 1;
-  config.gains.compliant_scale = 0.4;
-  config.gains.flight_share = 1.7;
-  config.supervisor = {.touchdown_from = 0.5,
-                       .flight_overtime = 0.1,
-                       .tilt_max = 1.25,
-                       .tilt_standing = 0.9,
-                       .joint_overshoot = 0.35,
-                       .joint_speed_max = 40.0,
-                       .joint_speed_standing = 20.0,
-                       .fall_time = 0.02,
-                       .rest_speed = 0.25,
-                       .rest_rate = 1.0,
-                       .commit_speed = 0.2};
-  config.actuation_delay = kActuationDelay;
-  config.mpc_delay = 0.001;
-  config.wrench_age_max = 0.025;
-  config.anchor_time = 0.15;
-  config.settle_time = 0.4;
-  config.fixed_step = 0.03;
-  return config;
-}
-
-class ControlTickTest : public ::testing::Test {
- protected:
-  ControlTickTest() {
-    state_.p_WB = {0.0, 0.0, 0.5481};
-    state_.R_WB.setIdentity();
-    state_.v_WB.setZero();
-    state_.w_WB.setZero();
-    state_.q << 0, 0, 0.7854, -1.5708, 0.7854, 0, 0, 0.7854, -1.5708, 0.7854;
-    state_.dq.setZero();
-    state_.contact = {true, true};
-    plan_ = testing::jump_shaped_plan(state_.q);
-    for (std::size_t i = 5; i < 10; ++i) plan_.knots[i].v_WG.z() = 1.0;  // pushes off from 0.1 s
-  }
-  core::JointCommand step(ControlTick& control) {
-    const core::JointCommand command = control.tick(state_);
-    state_.stamp.nanoseconds += 1'000'000;
-    return command;
-  }
-  ControlTick standing() { return {test_config(), robot_, StandTarget{state_.q, 0.0}}; }
-  /// Ticks until the phase is there; contact is lost in flight.
-  void run_to(ControlTick& control, RobotPhase phase) {
-    for (int i = 0; i < 1000 && control.phase() != phase; ++i) {
-      const bool contact = control.phase() != RobotPhase::flight;
-      state_.contact = {contact, contact};
-      step(control);
-    }
-    ASSERT_EQ(control.phase(), phase);
-    const bool contact = phase != RobotPhase::flight;
-    state_.contact = {contact, contact};
-  }
-
-  model::RobotParameters robot_ =
-      model::RobotParameters::load(HOPSCOTCH_SOURCE_DIR "/config/robots/hector.yaml");
-  core::RobotState state_;
-  core::JumpPlan plan_;
-};
+using testing::kActuationDelay;
+using testing::test_config;
+using ControlTickTest = testing::ControlTickFixture;
 
 TEST_F(ControlTickTest, StandsFromTheFirstTick) {
   ControlTick control = standing();
@@ -145,7 +83,11 @@ TEST_F(ControlTickTest, AnswersOfAnotherPhaseOrTooOldAreNotUsed) {
   answer.wrenches[0].force = {0.0, 0.0, 500.0};
   control.answer(answer);
   for (int i = 0; i < 30; ++i) step(control);
-  EXPECT_NEAR((step(control).tau - leg_weight_torques(robot_, state_)).norm(), 0.0, 1e-12);
+  core::ContactWrenches weight{};
+  for (core::Wrench& wrench : weight) wrench.force.z() = 0.5 * 9.80665 * robot_.total_mass();
+  const core::JointVector planned =
+      leg_weight_torques(robot_, state_) + contact_torques(robot_, state_, weight);
+  EXPECT_NEAR((step(control).tau - planned).norm(), 0.0, 1e-9);
   EXPECT_GT(control.stale_ticks(), 0U);
   control.offer(plan_);
   answer.stamp = state_.stamp;
@@ -344,7 +286,11 @@ TEST_F(ControlTickTest, AblationsChangeWhatTheyName) {
   step(literal);
   literal.offer(plan_);
   const core::JointCommand command = step(literal);
-  EXPECT_LT((command.tau - leg_weight_torques(robot_, state_)).norm(), 1e-12);  // no plan's torque
+  // Not the plan's torques; before the first answer of the MPC, the plan's wrenches.
+  const core::JointVector expected =
+      leg_weight_torques(robot_, state_) +
+      contact_torques(robot_, state_, sample_plan(plan_, 0.0).wrenches);
+  EXPECT_LT((command.tau - expected).norm(), 1e-9);
   literal.question(question);
   EXPECT_EQ(question.form, MpcForm::full);
 

@@ -138,9 +138,9 @@ TEST_F(JumpSupervisorTest, AStandWithoutGroundIsAFall) {
 }
 
 /// What can happen to the machine besides time.
-enum class Event { begin, hold, release, damp, clear, fault };
-constexpr std::array<Event, 6> kEvents{Event::begin, Event::hold,  Event::release,
-                                       Event::damp,  Event::clear, Event::fault};
+enum class Event { begin, call_off, hold, release, damp, clear, fault };
+constexpr std::array<Event, 7> kEvents{Event::begin, Event::call_off, Event::hold, Event::release,
+                                       Event::damp,  Event::clear,    Event::fault};
 constexpr std::array<RobotPhase, 9> kPhases{
     RobotPhase::stand,  RobotPhase::crouch,  RobotPhase::takeoff,
     RobotPhase::flight, RobotPhase::landing, RobotPhase::recover,
@@ -158,6 +158,10 @@ Outcome expected_outcome(RobotPhase from, Event event) {
     case Event::begin: {
       const bool starts = from == RobotPhase::stand || from == RobotPhase::landing;
       return {starts ? RobotPhase::crouch : from, true};
+    }
+    case Event::call_off: {
+      const bool can = from == RobotPhase::crouch;
+      return {can ? RobotPhase::landing : from, can};
     }
     case Event::hold: {
       const bool at_once = core::is_standing(from) || from == RobotPhase::crouch;
@@ -206,6 +210,7 @@ class EveryPhase : public JumpSupervisorTest {
   bool cause(JumpSupervisor& machine, Event event) {
     switch (event) {
       case Event::begin: machine.begin_jump(plan_); return true;
+      case Event::call_off: return machine.call_off();
       case Event::hold: return machine.hold();
       case Event::release: return machine.release(state_);
       case Event::damp: return machine.damp();
