@@ -37,6 +37,7 @@ Mission mission_of(const RunRequest& request) {
   if (request.scenario.goal.jumps) mission.jumps = *request.scenario.goal.jumps;
   const bool shorter = mission.jumps == 0 || request.jumps_max < mission.jumps;
   if (request.jumps_max > 0 && shorter) mission.jumps = request.jumps_max;
+  mission.targets = request.scenario.targets;
   const sim::StartPlace& start = request.scenario.start;
   const double ground =
       request.scenario.true_terrain().top_at({start.x, 0.0}).value_or(0.0);  // checked on loading

@@ -15,6 +15,15 @@ namespace hopscotch::apps {
 
 using core::RobotPhase;
 
+namespace {
+
+/// Of the ground at the place a plan led to, as the map had it [m].
+double height_aimed_at(const core::JumpPlan& plan) {
+  return plan.target.p_WS.z() + plan.target.height;
+}
+
+}  // namespace
+
 Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& robot,
                    const Mission& mission, TerrainOracle oracle, Threading threading)
     : config_(config),
@@ -23,6 +32,7 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
       oracle_(std::move(oracle)),
       estimator_(config.control.estimator, robot, mission.start),
       mapper_(config.perception, robot),
+      doubt_(config.footstep.doubt),
       selector_(config.footstep, robot),
       planner_(config.planner, robot),
       mpc_(config.control.wrench_mpc, robot),
@@ -69,7 +79,7 @@ core::JointCommand Pipeline::tick(const core::SensorReadings& readings, core::De
   events_.estimator_ms = watch.milliseconds();
   if (control_) control_->observe_drives(readings);
   run_stages(camera);
-  check_height();
+  if (calmed_down_) estimator_.correct_height(height_aimed_at(control_->plan()));
   return command_;
 }
 
@@ -84,6 +94,7 @@ core::JointCommand Pipeline::tick(const core::RobotState& state, core::DepthSour
 void Pipeline::run_stages(core::DepthSource& camera) {
   if (!control_) start(state_);
   history_.add(state_);
+  compare_height(state_);
   look(state_.stamp, camera);
   decide(state_);
   const Stopwatch watch;
@@ -97,11 +108,14 @@ void Pipeline::run_stages(core::DepthSource& camera) {
   events_.answers = desk_.take_answers();
 }
 
-/// Once a landing has calmed down, the map says how high the soles stand now.
-void Pipeline::check_height() {
-  if (height_checked_ || state_.stamp.since(landed_) < config_.runtime.look_time) return;
+/// Once a landing has calmed down, its height says how far the map is to be believed.
+void Pipeline::compare_height(const core::RobotState& state) {
+  calmed_down_ = !height_checked_ && state.stamp.since(landed_) >= config_.runtime.look_time;
+  if (!calmed_down_) return;
   height_checked_ = true;
-  estimator_.correct_height(control_->plan().target.p_WS.z() + control_->plan().target.height);
+  const auto soles = model::sole_poses(robot_, control_->rest_state());
+  doubt_.landed(0.5 * (soles[0].translation().z() + soles[1].translation().z()) -
+                height_aimed_at(control_->plan()));
 }
 
 void Pipeline::start(const core::RobotState& state) {
@@ -173,7 +187,10 @@ void Pipeline::ask_where(const core::RobotState& state) {
   for_operator_ = desk_.due().has_value();
   footstep::LandingTask task = task_;
   if (for_operator_) task.target = desk_.due();
+  task.height_doubt = doubt_.height();
   is_next_best_ = task.target.has_value() && !for_operator_;
+  const auto jump = static_cast<std::size_t>(jumps_done_);
+  if (!task.target && jump < mission_.targets.size()) task.target = mission_.targets[jump];
   events_.asked = &decision_.question();
   decision_.question() = {map_, control_->rest_state(), task, for_operator_, ++plans_made_};
   decision_.ask(state.stamp);
@@ -190,10 +207,20 @@ void Pipeline::make_decision(const DecisionQuestion& question, Decision& decisio
   decision.plan.reset();
   if (!decision.choice.target) return;
   if (!for_operator) decision.choice.target->source = task.source;  // the next best is no wish
-  decision.plan = planner_.plan({.start = rest,
-                                 .target = *decision.choice.target,
-                                 .final_posture = config_.stand_posture,
-                                 .id = plan_id});
+  planner::PlanRequest request{.start = rest,
+                               .target = *decision.choice.target,
+                               .final_posture = config_.stand_posture,
+                               .id = plan_id};
+  decision.plan = planner_.plan(request);
+  // Ground that cannot be cleared as high as it might be is cleared as high as possible.
+  footstep::LandingTask bolder = task;
+  for (const double share : {0.5, 0.0}) {
+    if (*decision.plan || task.height_doubt == 0.0) return;
+    bolder.height_doubt = share * task.height_doubt;
+    const core::TargetChoice again = selector_.choose({*map, decision.terrain}, rest, bolder);
+    if (again.target) request.target.profile = again.target->profile;
+    decision.plan = planner_.plan(request);
+  }
 }
 
 void Pipeline::weigh(core::Stamp now, const Decision& decision) {

@@ -18,9 +18,11 @@
 #include "core/jump_plan.hpp"
 #include "core/landing_target.hpp"
 #include "core/one_step_terrain.hpp"
+#include "core/operator_command.hpp"
 #include "core/result.hpp"
 #include "core/robot_state.hpp"
 #include "core/sensor_readings.hpp"
+#include "footstep/height_doubt.hpp"
 #include "footstep/landing_selector.hpp"
 #include "model/robot_parameters.hpp"
 #include "perception/terrain_mapper.hpp"
@@ -32,7 +34,8 @@ namespace hopscotch::apps {
 struct Mission {
   double goal_x = core::kNaN;  ///< Both heels beyond, along x of W [m]; NaN: no such goal.
   int jumps = 0;               ///< So many jumps; 0: no limit.
-  control::StartPlace start;   ///< Where the robot is put down: places W.
+  std::vector<core::TargetOverride> targets;  ///< Of the first jumps, one each.
+  control::StartPlace start;                  ///< Where the robot is put down: places W.
 };
 
 /// Why the robot jumps no more.
@@ -151,7 +154,7 @@ class Pipeline {
 
  private:
   void run_stages(core::DepthSource& camera);
-  void check_height();
+  void compare_height(const core::RobotState& state);
   void look(core::Stamp now, core::DepthSource& camera);
   void decide(const core::RobotState& state);
   void balance(core::Stamp now);
@@ -180,6 +183,7 @@ class Pipeline {
   core::JointCommand command_;
   StateHistory history_;
   perception::TerrainMapper mapper_;
+  footstep::HeightDoubt doubt_;
   footstep::LandingSelector selector_;
   planner::JumpPlanner planner_;
   control::WrenchMpc mpc_;
@@ -190,6 +194,7 @@ class Pipeline {
   core::Stamp last_mpc_;
   bool mpc_urgent_ = false;     ///< A phase began after the last question.
   bool height_checked_ = true;  ///< Since the last touchdown.
+  bool calmed_down_ = false;    ///< The last landing, in this tick.
   core::Stamp landed_;          ///< Of the last touchdown, or of the start.
   core::Stamp still_since_;     ///< Standing still since then.
   std::optional<core::Stamp> refused_since_;

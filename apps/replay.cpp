@@ -93,7 +93,8 @@ class LogReplay {
     const footstep::LandingTask task{.goal_x = asked.goal_x,
                                      .goal_heading = asked.goal_heading,
                                      .source = asked.source,
-                                     .target = asked.target};
+                                     .target = asked.target,
+                                     .height_doubt = asked.height_doubt};
     pending_.emplace(ReplayedLook{.report = stages_.look(*map, asked.rest, task),
                                   .map = *map,
                                   .frame = newest_ ? &*newest_ : nullptr,

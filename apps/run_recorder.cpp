@@ -226,6 +226,7 @@ void RunRecorder::record_perception(core::Stamp now, const PipelineEvents& event
                                               .goal_heading = task.goal_heading,
                                               .source = task.source,
                                               .target = task.target,
+                                              .height_doubt = task.height_doubt,
                                               .for_operator = events.asked->for_operator}));
 }
 

@@ -93,6 +93,7 @@ FootstepConfig FootstepConfig::load(const ConfigReader& section) {
   config.foothold = FootholdConfig::load(section.section("foothold"));
   config.reach = ReachConfig::load(section.section("reach"));
   config.profile = ProfileConfig::load(section.section("profile"));
+  config.doubt = DoubtConfig::load(section.section("doubt"));
   config.preference = PreferenceConfig::load(section.section("preference"));
   section.finish();
   return config;

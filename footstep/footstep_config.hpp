@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/config_reader.hpp"
+#include "footstep/height_doubt.hpp"
 
 namespace hopscotch::footstep {
 
@@ -73,6 +74,7 @@ struct FootstepConfig {
   FootholdConfig foothold;
   ReachConfig reach;
   ProfileConfig profile;
+  DoubtConfig doubt;
   PreferenceConfig preference;
 
   /// @throws core::ConfigError naming the key, its value and the violated rule.

@@ -9,6 +9,7 @@
 
 #include "footstep/candidates.hpp"
 #include "footstep/foothold_score.hpp"
+#include "footstep/height_doubt.hpp"
 #include "footstep/reachability.hpp"
 #include "footstep/refusal.hpp"
 #include "footstep/step_graph.hpp"
@@ -71,8 +72,20 @@ Takeoff present_takeoff(const core::OneStepTerrain& terrain) {
   return takeoff;
 }
 
-core::LandingTarget target_at(const Foothold& foothold, const StanceOnMap& stance,
-                              const BoundedProfile& profile, core::TargetSource source) {
+/// What is flown over where the map may be wrong: from the edge of the present tread, or where the
+/// toes are off it, to the edge of the next one, or where the heels have to come down.
+JumpStretch doubted(const Foothold& foothold, const StanceOnMap& stance, const Takeoff& takeoff) {
+  constexpr double kRise = 0.045;   // toes need so much way to rise [m]
+  constexpr double kRunIn = 0.045;  // and heels to come down [m]
+  const double heels = foothold.placement.x - stance.half_length;
+  const bool edge_seen = foothold.heel_margin < kMarginSearch;
+  const double margin = edge_seen ? foothold.heel_margin - core::TerrainProfile::kStep : 0.0;
+  const double from_edge = std::isfinite(takeoff.edge) ? takeoff.edge : 0.0;
+  return {std::max(stance.half_length + kRise, from_edge), heels - std::max(kRunIn, margin)};
+}
+
+core::LandingTarget target_at(const StepRules& rules, const StanceOnMap& stance,
+                              const Takeoff& takeoff, const Foothold& foothold) {
   core::LandingTarget target;
   const Placement& place = foothold.placement;
   const Eigen::AngleAxisd in_W(stance.heading, Eigen::Vector3d::UnitZ());
@@ -91,8 +104,8 @@ core::LandingTarget target_at(const Foothold& foothold, const StanceOnMap& stanc
   target.height = foothold.height;
   target.margin = foothold.margin();
   target.safe_probability = foothold.safe_probability;
-  target.source = source;
-  target.profile = profile.profile;
+  target.profile = rules.profile.profile;
+  raise(doubted(foothold, stance, takeoff), rules.height_doubt, target.profile);
   return target;
 }
 
@@ -164,7 +177,8 @@ void choose_best(const StepRules& rules, const StanceOnMap& stance,
       !ranked.empty() && (!ranked.front().dead_end || ranked.front().foothold.placement.x >=
                                                           rules.config.preference.dead_end_advance);
   if (worth_it) {
-    choice.target = target_at(ranked.front().foothold, stance, rules.profile, source);
+    choice.target = target_at(rules, stance, takeoff, ranked.front().foothold);
+    choice.target->source = source;
   } else {
     choice.refusal = explain_refusal(rules.config, terrain, judged);
   }
@@ -199,9 +213,8 @@ void choose_wanted(const StepRules& rules, const StanceOnMap& stance,
       score_foothold(rules.config.foothold, stance,
                      {.x = wanted.distance, .y = wanted.lateral, .yaw = wanted.yaw});
   JudgedFoothold judged{foothold, foothold.why};
-  if (judged.why == Reason::none) {
-    judged.why = step_verdict(rules, present_takeoff(terrain), foothold);
-  }
+  const Takeoff takeoff = present_takeoff(terrain);
+  if (judged.why == Reason::none) judged.why = step_verdict(rules, takeoff, foothold);
   if (judged.why != Reason::none) {
     list_rejected(judged, choice);
     choice.refusal = explain_place(rules.config, judged);
@@ -216,7 +229,8 @@ void choose_wanted(const StepRules& rules, const StanceOnMap& stance,
     return;
   }
   list_ranked(foothold, stance.half_length, choice);
-  choice.target = target_at(foothold, stance, rules.profile, core::TargetSource::operator_override);
+  choice.target = target_at(rules, stance, takeoff, foothold);
+  choice.target->source = core::TargetSource::operator_override;
 }
 
 }  // namespace
@@ -233,9 +247,12 @@ TargetChoice LandingSelector::choose(const SeenGround& ground, const core::Robot
     choice.refusal = {Reason::terrain_unseen, "there is no map yet, or no pose to read it from"};
     return choice;
   }
-  const BoundedProfile profile = bound_profile(config_.profile, ground.terrain.profile);
+  core::TerrainProfile seen = ground.terrain.profile;
+  put_underfoot(seen);
+  const BoundedProfile profile = bound_profile(config_.profile, seen);
   const StepRules rules{.config = config_,
                         .profile = profile,
+                        .height_doubt = task.height_doubt,
                         .half_length = stance.half_length,
                         .goal_x = goal_in_S(task, stance, config_.preference.goal_margin)};
   if (task.target) {

@@ -24,6 +24,7 @@ struct LandingTask {
   double goal_heading = 0.0;   ///< Direction in W along which the goal is measured [rad].
   core::TargetSource source = core::TargetSource::perception;  ///< Stated in the target.
   std::optional<core::TargetOverride> target{};  ///< A place asked for; judged by the same rules.
+  double height_doubt = 0.0;  ///< The ground ahead may be so much higher than the map says [m].
 };
 
 /// Chooses where the next jump lands: safe to stand on, within reach, and a place to go on from.

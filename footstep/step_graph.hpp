@@ -14,6 +14,7 @@ namespace hopscotch::footstep {
 struct StepRules {
   const FootstepConfig& config;
   const BoundedProfile& profile;
+  double height_doubt = 0.0;                                ///< Of what is flown over [m].
   double half_length = 0.0;                                 ///< Of a sole [m].
   double goal_x = std::numeric_limits<double>::infinity();  ///< Mid-point of the soles, in S [m].
 };

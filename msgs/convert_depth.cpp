@@ -158,6 +158,7 @@ Bytes encode(const TargetQuestion& value, const Tag& tag) {
   message.height = wanted.height;
   message.lateral = wanted.lateral;
   message.yaw_rad = wanted.yaw;
+  message.height_doubt = value.height_doubt;
   return wire::to_bytes(message);
 }
 
@@ -173,6 +174,7 @@ std::optional<Tagged<TargetQuestion>> decode(std::span<const std::uint8_t> bytes
   value.for_operator = message->for_operator != 0;
   value.goal_x = message->goal_x;
   value.goal_heading = message->goal_heading_rad;
+  value.height_doubt = message->height_doubt;
   if (!wire::get_enum(message->source, core::TargetSource::operator_override, value.source)) {
     return std::nullopt;
   }

@@ -49,6 +49,7 @@ struct TargetQuestion {
   double goal_heading = 0.0;   ///< In W [rad].
   core::TargetSource source = core::TargetSource::perception;
   std::optional<core::TargetOverride> target;  ///< A place asked for.
+  double height_doubt = 0.0;                   ///< Of the map ahead [m].
   bool for_operator = false;                   ///< By the operator, not as the next best one.
 };
 
