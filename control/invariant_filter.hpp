@@ -38,14 +38,12 @@ class InvariantFilter {
   /// Order of the error state: attitude, velocity, position, left sole, right sole, gyro bias,
   /// accelerometer bias; three each.
   static constexpr int kSize = 21;
-  enum Block : int {
-    kAttitude = 0,
-    kVelocity = 3,
-    kPosition = 6,
-    kSole = 9,
-    kGyroBias = 15,
-    kForceBias = 18,
-  };
+  static constexpr int kAttitude = 0;
+  static constexpr int kVelocity = 3;
+  static constexpr int kPosition = 6;
+  static constexpr int kSole = 9;
+  static constexpr int kGyroBias = 15;
+  static constexpr int kForceBias = 18;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
 
   /// @param start Place and attitude believed at start-up; biases zero, no foot stands.
