@@ -25,6 +25,9 @@ struct BenchSetup {
 
 /// Cold and warm solves over a grid of reachable targets; times are thread CPU time.
 [[nodiscard]] nlohmann::ordered_json bench_planner(const BenchSetup& setup);
+/// The planner's formulation beside those it is compared with: solve time, and what MuJoCo makes of
+/// what each promises, for three jumps.
+[[nodiscard]] nlohmann::ordered_json bench_formulations(const BenchSetup& setup);
 /// The QPs of a simulated run; with a file of recorded QPs those, against their reference.
 /// @throws core::ConfigError if `qps` is given and is no such file.
 [[nodiscard]] nlohmann::ordered_json bench_mpc(const BenchSetup& setup,

@@ -16,6 +16,7 @@ struct BenchOptions {
   std::string what;
   std::filesystem::path qps;
   int jumps = 20;
+  bool compare = false;
   bool json = false;
 };
 
@@ -41,7 +42,9 @@ std::string machine() {
 nlohmann::ordered_json measure(const BenchOptions& options) {
   const BenchSetup setup{ProgramConfig::load(config_directory() / "hopscotch.yaml"),
                          model::RobotParameters::load(robot_file("hector"))};
-  if (options.what == "planner") return bench_planner(setup);
+  if (options.what == "planner") {
+    return options.compare ? bench_formulations(setup) : bench_planner(setup);
+  }
   if (options.what == "mpc") return bench_mpc(setup, options.qps);
   if (options.what == "perception") return bench_perception(setup);
   if (options.what == "wire") return bench_wire();
@@ -50,12 +53,29 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
   return bench_sim(setup);
 }
 
+void print_comparison(const nlohmann::ordered_json& rows) {
+  std::printf("%-24s %-12s %10s %6s %9s %9s %9s\n", "jump", "model", "solve ms", "iter.",
+              "missed by", "promised", "flown");
+  for (const auto& row : rows) {
+    const auto cell = [&row](const char* key, double scale) {
+      return row[key].is_number() ? scale * row[key].get<double>() : core::kNaN;
+    };
+    std::printf("%-24s %-12s %10.1f %6d %6.1f cm %5.2f m/s %5.2f m/s  %s\n",
+                row["jump"].get<std::string>().c_str(), row["model"].get<std::string>().c_str(),
+                row["solve_ms"].get<double>(), row["iterations"].get<int>(),
+                cell("landing_error_m", 100.0), cell("promised_speed_z_mps", 1.0),
+                cell("flown_speed_z_mps", 1.0), row["outcome"].get<std::string>().c_str());
+  }
+}
+
 void print_people(const nlohmann::ordered_json& json) {
   for (const auto& [key, value] : json.items()) {
     if (value.is_object() && value.contains("p50")) {
       std::printf("%-22s p50 %-10.4g p99 %-10.4g max %.4g\n", key.c_str(),
                   value["p50"].get<double>(), value["p99"].get<double>(),
                   value["max"].get<double>());
+    } else if (key == "compare") {
+      print_comparison(value);
     } else {
       std::printf("%-22s %s\n", key.c_str(),
                   value.is_string() ? value.get<std::string>().c_str() : value.dump().c_str());
@@ -78,9 +98,14 @@ void add_bench_command(CLI::App& app, Action& action) {
   command->add_option("--jumps", options->jumps, "estimator: so many jumps")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  command->add_flag("--compare", options->compare,
+                    "planner: against other formulations of the same jumps, flown in MuJoCo");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([&action, options] {
     action = [options] {
+      if (options->compare && options->what != "planner") {
+        throw core::ConfigError("bench: --compare is an option of planner");
+      }
       nlohmann::ordered_json json;
       json["schema"] = "hopscotch.bench/1";
       json["bench"] = options->what;

@@ -59,7 +59,8 @@ planner::PlanRequest request_of(const PlanOptions& options, const ProgramConfig&
           .target = planner::step_target(options.step, robot),
           .final_posture = config.stand_posture,
           .guess = options.cold ? planner::StartGuess::kinematic : planner::StartGuess::previous,
-          .solver = options.solver == "ipopt" ? planner::Solver::ipopt : planner::Solver::chain};
+          .solver = options.solver == "ipopt" ? planner::Solver::ipopt : planner::Solver::chain,
+          .formulation = *planner::formulation_from(options.model)};
 }
 
 void say_flown(const FlownJump& flown) {
@@ -116,8 +117,10 @@ struct PlanSession {
 ExitStatus refuse(PlanSession& session, const PlanOptions& options, const core::Refusal& refusal) {
   RefusedPlan refused{options.step, refusal, session.planner.obstacle(),
                       session.planner.iterations(), std::nullopt};
-  refused.nearest =
-      planner::nearest_target(session.planner, session.request, options.step, session.robot);
+  if (session.request.formulation == planner::Formulation::variable) {
+    refused.nearest =
+        planner::nearest_target(session.planner, session.request, options.step, session.robot);
+  }
   if (options.json) {
     std::printf("%s", refused_plan_json(refused, session.context).c_str());
   } else {
@@ -131,6 +134,13 @@ ExitStatus plan(PlanOptions options) {
   if (!std::isfinite(step.distance + step.height + step.lateral + step.yaw)) {
     throw core::ConfigError(
         "plan: --distance, --height, --lateral and --yaw must be finite numbers");
+  }
+  if (options.model != "variable") {
+    options.solver = "ipopt";
+    if (step.lateral != 0.0 || step.yaw != 0.0) {
+      throw core::ConfigError("plan: --model " + options.model +
+                              " plans straight jumps only; --lateral and --yaw must be 0");
+    }
   }
   if (std::isnan(step.edge)) step.edge = planner::default_edge(step.distance, step.height);
   ProgramConfig config = ProgramConfig::load(options.config);
@@ -169,8 +179,10 @@ void add_plan_command(CLI::App& app, Action& action) {
   command
       ->add_option("--friction", options->friction, "Of the ground, instead of the configured one")
       ->check(CLI::Range(0.05, 1.2));
-  command->add_option("--model", options->model, "Formulation")
-      ->check(CLI::IsMember({"variable"}))
+  command
+      ->add_option("--model", options->model,
+                   "Formulation; all but the first are for comparison, and by Ipopt")
+      ->check(CLI::IsMember({"variable", "paper", "full", "kinodynamic", "srbd"}))
       ->capture_default_str();
   command->add_option("--solver", options->solver, "Solver")
       ->check(CLI::IsMember({"chain", "ipopt"}))

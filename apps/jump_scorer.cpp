@@ -8,6 +8,13 @@ namespace hopscotch::apps {
 
 using core::RobotPhase;
 
+namespace {
+
+/// A sole that touches again so soon after lift-off has scraped along, not landed [s].
+constexpr double kShortestFlight = 0.05;
+
+}  // namespace
+
 JumpScorer::JumpScorer(const model::RobotParameters& robot, const sim::Terrain& terrain)
     : robot_(robot), terrain_(terrain) {}
 
@@ -55,9 +62,13 @@ void JumpScorer::follow(const sim::PlantTruth& truth, const core::RobotState& us
     jump.takeoff.speed_z = v_WG.z();
     jump.takeoff.estimate_error = (model::composite_body(robot_, used).v_WG - v_WG).norm();
   }
-  if (contact && liftoff_ && !touched_ && !core::is_pushing_off(phase_)) {
+  if (!contact || !liftoff_ || touched_ || core::is_pushing_off(phase_)) return;
+  const double flight = truth.state.stamp.since(*liftoff_);
+  if (flight < kShortestFlight && phase_ == RobotPhase::flight) {
+    liftoff_.reset();
+  } else {
     touched_ = true;
-    jump.flight = truth.state.stamp.since(*liftoff_);
+    jump.flight = flight;
   }
 }
 

@@ -248,6 +248,7 @@ void examine_step(const PlanarModel& model, const PlanarMotion& motion, const Pl
   const double h = knot.dt / samples;
   PlanarKnot now = knot;
   now.correction = {};
+  now.promised.reset();
   LinkArray<double> before{};
   for (int i = 0; i <= samples; ++i) {
     now.time = knot.time + h * i;

@@ -125,6 +125,17 @@ std::optional<Refusal> certify_and_lift(const PlanarModel& model, const PlanarTa
   return std::nullopt;
 }
 
+core::JumpPlan plan_for(const PlanRequest& request, const SolveOutcome& outcome) {
+  core::JumpPlan plan;
+  plan.id = request.id;
+  plan.stamp = request.start.stamp;
+  plan.target = request.target;
+  plan.status = outcome.status == SolveStatus::solved ? core::PlanStatus::solved
+                                                      : core::PlanStatus::iteration_limit;
+  plan.iterations = outcome.iterations;
+  return plan;
+}
+
 bool acceptable(const SolveOutcome& outcome) {
   return (outcome.status == SolveStatus::solved ||
           outcome.status == SolveStatus::iteration_limit) &&
@@ -157,6 +168,8 @@ struct JumpPlanner::Memory {
                                          ChainProblem& problem, StartGuess guess);
   void refine(const PlanarModel& model, const PlanarTask& task, ChainProblem& problem,
               SolvedMotion& best);
+  [[nodiscard]] core::Result<core::JumpPlan> plan_otherwise(const PlanRequest& request,
+                                                            const PlanarTask& task);
 };
 
 SolvedMotion JumpPlanner::Memory::solve(const PlanarModel& model, const PlanarTask& task,
@@ -238,6 +251,26 @@ void JumpPlanner::Memory::refine(const PlanarModel& model, const PlanarTask& tas
   best.outcome.iterations += kPolishIterations - left;
 }
 
+/// By a formulation that is compared with the planner's own.
+core::Result<core::JumpPlan> JumpPlanner::Memory::plan_otherwise(const PlanRequest& request,
+                                                                 const PlanarTask& task) {
+  if (!side_target(request.target).is_straight()) {
+    return Refusal{Reason::target_malformed, "this formulation plans jumps straight ahead only"};
+  }
+  const FormulatedJump solved = solve_formulation(request.formulation, straight, task);
+  iterations = solved.outcome.iterations;
+  if (solved.outcome.status != SolveStatus::solved) return infeasible(solved.outcome, task, {});
+  core::JumpPlan plan = plan_for(request, solved.outcome);
+  const CertifiedMotion certified = certify(straight, task, solved.motion);
+  plan.certificate = certified.certificate;
+  plan.certificate.max_violation = solved.outcome.violation;
+  plan.peaks = certified.peaks;
+  if (!lift_to_3d(straight, solved.motion, plan.target, plan)) {
+    return Refusal{Reason::out_of_reach, "a leg cannot reach so far"};
+  }
+  return plan;
+}
+
 JumpPlanner::JumpPlanner(const PlannerConfig& config, const model::RobotParameters& robot)
     : memory_(std::make_unique<Memory>(robot, config)) {
   const StepCounts& steps = config.steps;
@@ -267,6 +300,7 @@ core::Result<core::JumpPlan> JumpPlanner::plan(const PlanRequest& request) {
   memory_->iterations = 0;
   const core::Result<PlanarTask> task = planar_task(model, request);
   if (!task) return task.error();
+  if (request.formulation != Formulation::variable) return memory_->plan_otherwise(request, *task);
 
   const bool warm = request.guess == StartGuess::previous && memory_->previous.size() > 0;
   const SolvedMotion solved =
@@ -275,13 +309,7 @@ core::Result<core::JumpPlan> JumpPlanner::plan(const PlanRequest& request) {
   memory_->iterations = outcome.iterations;
   if (!acceptable(outcome)) return infeasible(outcome, *task, memory_->obstacle);
 
-  core::JumpPlan plan;
-  plan.id = request.id;
-  plan.stamp = request.start.stamp;
-  plan.target = request.target;
-  plan.status = outcome.status == SolveStatus::solved ? core::PlanStatus::solved
-                                                      : core::PlanStatus::iteration_limit;
-  plan.iterations = outcome.iterations;
+  core::JumpPlan plan = plan_for(request, outcome);
   plan.warm = warm;
   if (std::optional<Refusal> refusal =
           certify_and_lift(model, *task, solved, request.solver, plan)) {

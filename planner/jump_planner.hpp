@@ -10,6 +10,7 @@
 #include "core/robot_state.hpp"
 #include "model/robot_parameters.hpp"
 #include "model/stand_posture.hpp"
+#include "planner/formulation.hpp"
 #include "planner/planner_config.hpp"
 
 namespace hopscotch::planner {
@@ -33,6 +34,9 @@ struct PlanRequest {
   std::uint64_t id = 0;
   StartGuess guess = StartGuess::kinematic;
   Solver solver = Solver::chain;
+  /// Others than the first are for comparison: straight jumps only, always cold and by Ipopt; their
+  /// certificate says what exact dynamics make of the plan, and refuses nothing.
+  Formulation formulation = Formulation::variable;
 };
 
 /// Plans one jump: takeoff, flight and landing as one nonlinear program over the exact sagittal

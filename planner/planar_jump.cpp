@@ -83,6 +83,19 @@ PlanarMotion motion_from_decision(const PlanarModel& model, const PlanarTask& ta
   return motion;
 }
 
+namespace {
+
+void keep_promise(const PromisedStep& promised, double elapsed, PlanarInstant& now) {
+  now.tau = promised.tau;
+  now.force = promised.force;
+  now.moment = promised.moment;
+  now.ankle_velocity = promised.ankle_velocity;
+  now.ankle = {promised.ankle.x + elapsed * promised.ankle_velocity.x,
+               promised.ankle.z + elapsed * promised.ankle_velocity.z};
+}
+
+}  // namespace
+
 PlanarInstant instant(const PlanarModel& model, const PlanarMotion& motion, const PlanarKnot& knot,
                       double elapsed) {
   PlanarInstant now;
@@ -107,6 +120,7 @@ PlanarInstant instant(const PlanarModel& model, const PlanarMotion& motion, cons
                  motion.liftoff_com.z + v.z * t - 0.5 * model::kGravity * t * t - com.z};
     now.ankle_velocity = {v.x - velocity.x, v.z - model::kGravity * t - velocity.z};
     now.tau = dynamics.flight_torques(links.pitch, links.rate, acceleration);
+    if (knot.promised) keep_promise(*knot.promised, elapsed, now);
     return now;
   }
   now.ankle = knot.phase == core::JumpPhase::takeoff ? motion.start_ankle : motion.target_ankle;
@@ -115,6 +129,7 @@ PlanarInstant instant(const PlanarModel& model, const PlanarMotion& motion, cons
   now.tau = loads.tau;
   now.force = loads.force;
   now.moment = loads.moment;
+  if (knot.promised) keep_promise(*knot.promised, elapsed, now);
   return now;
 }
 

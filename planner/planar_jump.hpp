@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/jump_plan.hpp"
@@ -47,6 +48,15 @@ struct StepCorrection {
   model::LinkArray<double> acceleration{};  ///< That torques are computed for, more [rad/s^2].
 };
 
+/// What a simpler model takes for true during a step, in place of what the chain of links does.
+struct PromisedStep {
+  model::PlanarJoints<double> tau{};             ///< Joint torques [N·m].
+  model::PlanarVector<double> force{};           ///< Ground on the feet [N].
+  double moment = 0.0;                           ///< Of that force about the ankle axis [N·m].
+  model::PlanarVector<double> ankle{};           ///< At the knot [m].
+  model::PlanarVector<double> ankle_velocity{};  ///< [m/s]
+};
+
 /// A knot of the planar motion and the step that follows it, in which the angular accelerations of
 /// the links are constant but for the correction.
 struct PlanarKnot {
@@ -56,6 +66,7 @@ struct PlanarKnot {
   LinkState links;    ///< At the knot; at touchdown after the ground has stopped the foot.
   model::LinkArray<double> acceleration{};  ///< During the step [rad/s^2].
   StepCorrection correction;
+  std::optional<PromisedStep> promised;
 };
 
 /// Everything about the motion at one instant. Two legs together, frame S.
