@@ -57,14 +57,20 @@ void print_comparison(const nlohmann::ordered_json& rows) {
   std::printf("%-24s %-12s %10s %6s %9s %9s %9s\n", "jump", "model", "solve ms", "iter.",
               "missed by", "promised", "flown");
   for (const auto& row : rows) {
-    const auto cell = [&row](const char* key, double scale) {
-      return row[key].is_number() ? scale * row[key].get<double>() : core::kNaN;
+    const auto cell = [&row](const char* key, double scale, const char* unit) {
+      char text[32] = "-";
+      if (row.contains(key) && row[key].is_number()) {
+        std::snprintf(text, sizeof text, "%.2f %s", scale * row[key].get<double>(), unit);
+      }
+      return std::string(text);
     };
-    std::printf("%-24s %-12s %10.1f %6d %6.1f cm %5.2f m/s %5.2f m/s  %s\n",
+    std::printf("%-24s %-12s %10.1f %6d %9s %9s %9s  %s\n",
                 row["jump"].get<std::string>().c_str(), row["model"].get<std::string>().c_str(),
                 row["solve_ms"].get<double>(), row["iterations"].get<int>(),
-                cell("landing_error_m", 100.0), cell("promised_speed_z_mps", 1.0),
-                cell("flown_speed_z_mps", 1.0), row["outcome"].get<std::string>().c_str());
+                cell("landing_error_m", 100.0, "cm").c_str(),
+                cell("promised_speed_z_mps", 1.0, "m/s").c_str(),
+                cell("flown_speed_z_mps", 1.0, "m/s").c_str(),
+                row["outcome"].get<std::string>().c_str());
   }
 }
 
