@@ -55,7 +55,7 @@ class ControlTickFixture : public ::testing::Test {
     for (std::size_t i = 5; i < 10; ++i) plan_.knots[i].v_WG.z() = 1.0;  // pushes off from 0.1 s
   }
   core::JointCommand step(ControlTick& control) {
-    const core::JointCommand command = control.tick(state_);
+    core::JointCommand command = control.tick(state_);
     state_.stamp.nanoseconds += 1'000'000;
     return command;
   }
