@@ -110,7 +110,9 @@ void Pipeline::run_stages(core::DepthSource& camera) {
 
 /// Once a landing has calmed down, its height says how far the map is to be believed.
 void Pipeline::compare_height(const core::RobotState& state) {
-  calmed_down_ = !height_checked_ && state.stamp.since(landed_) >= config_.runtime.look_time;
+  const bool jumped = jumps_done_ > 0;  // after a fall the soles say how high the map is
+  calmed_down_ =
+      jumped && !height_checked_ && state.stamp.since(landed_) >= config_.runtime.look_time;
   if (!calmed_down_) return;
   height_checked_ = true;
   const auto soles = model::sole_poses(robot_, control_->rest_state());
@@ -137,6 +139,16 @@ void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
     map_ = std::move(sight->map);
     const bool fused = sight->status == perception::MapStatus::fused;
     if (fused && sight->exposed > landed_) ++frames_since_landing_;
+  }
+  // A robot that was dropped had its soles in the air when the map was tied to them.
+  const bool fallen = !height_checked_ && jumps_done_ == 0;
+  if (fallen && sight_.vacant() && now.since(landed_) >= config_.runtime.look_time) {
+    height_checked_ = true;
+    frames_since_landing_ = 0;
+    mapper_ = perception::TerrainMapper(config_.perception, robot_);
+    mapper_.anchor_support(state_);
+    events_.anchor = state_;
+    map_ = std::make_shared<const core::TerrainMap>(mapper_.map());
   }
   while (sight_.vacant()) {
     std::optional<core::DepthFrame> frame = camera.poll(now);
@@ -306,7 +318,7 @@ void Pipeline::watch_mission(const core::RobotState& state) {
     landed_ = state.stamp;
     frames_since_landing_ = 0;
     const bool jumped = status.plan_id != 0;  // and did not fall
-    height_checked_ = !jumped;
+    height_checked_ = !jumped && jumps_done_ > 0;
     jumps_done_ += jumped ? 1 : 0;
   }
   const bool standing = status.phase == RobotPhase::stand || status.phase == RobotPhase::hold;

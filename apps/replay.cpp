@@ -72,6 +72,8 @@ class LogReplay {
       : stages_(config, robot), observe_(observe) {}
 
   void anchor(const msgs::AnchorRecord& record) {
+    // Each anchor begins a map: at the start, and once more after a fall.
+    stages_.mapper = perception::TerrainMapper(stages_.config.perception, stages_.robot);
     (void)stages_.mapper.anchor_support(record.state);
     remember_map();
   }

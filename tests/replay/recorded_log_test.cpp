@@ -71,6 +71,30 @@ class RecordedLog : public ::testing::Test {
   }
 };
 
+TEST(DroppedRobot, SeesWhereToJumpAndIsReplayedAlike) {
+  const std::string scenario =
+      "name: dropped\ncamera: {width: 320, height: 240}\nslabs: [{x_m: [-1.0, 3.0]}]\n"
+      "start: {drop_m: 0.2}\ngoal: {jumps: 1}\n";
+  const fs::path folder =
+      fs::path(::testing::TempDir()) / ("dropped_robot_test-" + std::to_string(getpid()));
+  RunRequest request;
+  request.scenario = sim::Scenario::from_text(scenario, "dropped");
+  request.config = tuning();
+  request.robot = hector();
+  request.plant_robot = hector();
+  request.log_depth = true;
+  RunRecorder recorder(folder, 9, request, {scenario, "", ""});
+  LockstepRun run(request);
+  while (run.step([&](const TickRecord& tick) { recorder.record(tick); })) {
+  }
+  (void)recorder.finish(run.result());
+  EXPECT_EQ(run.result().outcome, RunOutcome::completed) << run.result().reason;
+  const ReplaySummary summary = replay_log(folder / "run.lcm", tuning(), hector(), {});
+  EXPECT_GE(summary.looks, 1);
+  EXPECT_EQ(summary.terrains_differing + summary.targets_differing, 0);
+  fs::remove_all(folder);
+}
+
 TEST_F(RecordedLog, LooksTheSameAgainBitByBit) {
   int compared = 0;
   const ReplaySummary summary =

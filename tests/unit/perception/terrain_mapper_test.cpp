@@ -138,7 +138,7 @@ TEST_F(TerrainMapperTest, MapRemembersWhatWasAheadWhenTheRobotStandsOnIt) {
   EXPECT_GT(seen_below, 150);  // of 160
 }
 
-TEST_F(TerrainMapperTest, MovedBoxIsReplacedWithinAFewFrames) {
+TEST_F(TerrainMapperTest, MovedBoxIsReplacedWithinTwoFrames) {
   const Course with_box{.blocks = {{-1.0, 5.0, 0.0}, {0.6, 0.8, 0.15, 0.2}}};
   test::look(with_box, test::standing_at(with_box, 0.0, 0.0, 0.0), 6, 17, mapper_);
   const auto highest = [&] {
@@ -150,8 +150,49 @@ TEST_F(TerrainMapperTest, MovedBoxIsReplacedWithinAFewFrames) {
     return top;
   };
   EXPECT_GT(highest(), 0.14F);
-  test::look(kFlat, test::standing_at(kFlat, 0.0, 0.0, 1.0), 4, 18, mapper_);
+  test::look(kFlat, test::standing_at(kFlat, 0.0, 0.0, 1.0), 2, 18, mapper_);
   EXPECT_LT(highest(), 0.02F);
+}
+
+TEST_F(TerrainMapperTest, WhatADriftedStateSawIsReplacedWithinTwoFrames) {
+  core::RobotState drifted = test::standing_at(kFlat, 0.0, 0.0, 0.0);
+  drifted.p_WB.z() += 0.030;
+  for (int i = 0; i < 6; ++i) {
+    core::DepthFrame frame = test::render(kFlat, test::standing_at(kFlat, 0.0, 0.0, 0.0));
+    frame.stamp = core::Stamp::from_seconds(0.03 * (i + 1));
+    ASSERT_EQ(mapper_.integrate(frame, drifted), MapStatus::fused);
+  }
+  test::look(kFlat, test::standing_at(kFlat, 0.0, 0.0, 1.0), 2, 23, mapper_);
+  int near = 0;
+  for_each_cell([&](double x, double y, const core::TerrainCell& cell) {
+    if (cell.state != CellState::observed || x > 1.0 || std::abs(y) > 0.2) return;
+    ++near;
+    EXPECT_NEAR(cell.height, 0.0, 0.015) << "at " << x << ", " << y;
+  });
+  EXPECT_GT(near, 1000);
+}
+
+TEST_F(TerrainMapperTest, FortyPercentDropoutInventsNothing) {
+  const core::RobotState state = test::standing_at(kStones, 0.0, 0.0, 0.0);
+  std::mt19937 random(24);
+  std::bernoulli_distribution lost(0.4);
+  for (int i = 0; i < 8; ++i) {
+    core::DepthFrame frame = test::render(kStones, state);
+    for (float& z : frame.depth) z = lost(random) ? 0.0F : z;
+    frame.stamp = core::Stamp::from_seconds(0.03 * (i + 1));
+    ASSERT_EQ(mapper_.integrate(frame, state), MapStatus::fused);
+  }
+  int seen = 0;
+  for_each_cell([&](double x, double y, const core::TerrainCell& cell) {
+    if (cell.state != CellState::observed || std::abs(y) > 0.5 || x > 1.0) return;
+    ++seen;
+    const double reach = 0.010;  // an edge cell and half of the next
+    const bool real = std::abs(test::top_at(kStones, x - reach, y) - cell.height) < 0.02 ||
+                      std::abs(test::top_at(kStones, x, y) - cell.height) < 0.02 ||
+                      std::abs(test::top_at(kStones, x + reach, y) - cell.height) < 0.02;
+    EXPECT_TRUE(real || cell.height < -0.03F) << "at " << x << ", " << y;
+  });
+  EXPECT_GT(seen, 1000);
 }
 
 TEST_F(TerrainMapperTest, OwnLegsDoNotBecomeGround) {
