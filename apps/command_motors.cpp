@@ -6,12 +6,15 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "apps/commands.hpp"
+#include "apps/emulated_eyes.hpp"
 #include "apps/emulated_robot.hpp"
 #include "apps/fault_script.hpp"
 #include "apps/installation.hpp"
+#include "apps/live_run.hpp"
 #include "apps/robot_config.hpp"
 #include "apps/step_link.hpp"
 #include "hardware/can_bus.hpp"
@@ -46,6 +49,10 @@ class MotorsProgram {
         if (drive.bus == i) options.identifiers.push_back(drive.id);
       }
       buses_.emplace_back(options);
+    }
+    if (config.session.has_eyes) {
+      eyes_.emplace(config.emulation.scenario, config.robot, config.emulation.seed, live_url(),
+                    config.pacing.mode);
     }
   }
 
@@ -82,6 +89,7 @@ class MotorsProgram {
       script_.play(world_);
       world_.advance();
       send_imu();
+      look(monotonic_now());
       report();
     }
   }
@@ -103,7 +111,18 @@ class MotorsProgram {
       for (std::size_t k = 0; k < count; ++k) pass_on(buses_[i], events[k]);
     }
     send_imu();
+    look(world_.now());
     report();
+  }
+
+  static core::Stamp monotonic_now() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return {now.tv_sec * 1'000'000'000LL + now.tv_nsec};
+  }
+
+  void look(core::Stamp robot_time) {
+    if (eyes_) eyes_->look(world_.truth().state, robot_time);
   }
 
   /// The kernel confirms the robot's own frames itself; the rest of what the model says goes out.
@@ -175,6 +194,7 @@ class MotorsProgram {
   EmulatedRobot world_;
   FaultScript script_;
   hardware::SerialImuEnd imu_;
+  std::optional<EmulatedEyes> eyes_;
   std::vector<hardware::CanBus> buses_;
   bool was_in_harness_ = true;
 };

@@ -53,6 +53,20 @@ void say(std::FILE* people, const ReplayedLook& look) {
                compared ? (equal ? "; as recorded" : "; DIFFERS from the record") : "");
 }
 
+void say(std::FILE* people, const ReplaySummary& summary) {
+  if (summary.frames == 0) {
+    std::fprintf(people, "no depth frames: perception was not run again (run --log-depth)\n");
+  } else {
+    std::fprintf(
+        people, "%d frames, %d looks; differing from the record: %d terrains, %d targets\n",
+        summary.frames, summary.looks, summary.terrains_differing, summary.targets_differing);
+  }
+  if (summary.states.compared + summary.plans.compared == 0) return;
+  std::fprintf(people, "differing from the record: %d of %d states, %d of %d plans\n",
+               summary.states.differing, summary.states.compared, summary.plans.differing,
+               summary.plans.compared);
+}
+
 ExitStatus replay(const ReplayOptions& options) {
   const ProgramConfig config = ProgramConfig::load(options.config);
   const model::RobotParameters robot = model::RobotParameters::load(robot_file(options.robot));
@@ -77,22 +91,21 @@ ExitStatus replay(const ReplayOptions& options) {
                                     ? replay_folder(options.log, scaling, config, robot, observe)
                                     : replay_log(options.log, config, robot, observe);
   if (!options.out.empty()) write_file_atomically(options.out / "terrain.jsonl", lines);
-  const int differing = summary.terrains_differing + summary.targets_differing;
-  std::fprintf(people, "%d frames, %d looks; %d terrains and %d targets differ from the record\n",
-               summary.frames, summary.looks, summary.terrains_differing,
-               summary.targets_differing);
-  return differing == 0 ? ExitStatus::ok : ExitStatus::answer_is_no;
+  say(people, summary);
+  return summary.differing() == 0 ? ExitStatus::ok : ExitStatus::answer_is_no;
 }
 
 }  // namespace
 
 void add_replay_command(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("replay", "Looks again at a recorded log or a folder of depth images");
+      app.add_subcommand("replay", "Runs a recorded log or a folder of depth images again");
   command->footer(
-      "A log must be recorded with `run --log-depth`; what comes out is compared bit by bit with\n"
-      "what it holds, and exit status 1 says that something differs. A folder holds 16-bit depth\n"
-      "images and perhaps a text file *pose*.txt with a line \"[stamp] tx ty tz qx qy qz qw\" "
+      "Estimator and planner run again, and perception and target choice if the log was recorded\n"
+      "with `run --log-depth`. What comes out is compared bit by bit with what the log holds; "
+      "exit\n"
+      "status 1 says that something differs. A folder holds 16-bit depth images and perhaps a text "
+      "file *pose*.txt with a line \"[stamp] tx ty tz qx qy qz qw\" "
       "each.\n"
       "Example: hopscotch replay runs/stones-1/run.lcm --out runs/stones-1/replay");
   const auto options = std::make_shared<ReplayOptions>();  // shared with the action below

@@ -22,6 +22,23 @@ double height_aimed_at(const core::JumpPlan& plan) {
   return plan.target.p_WS.z() + plan.target.height;
 }
 
+/// As HOP_SENSORS carries them, so that a replay of the log computes from the same bits.
+core::SensorReadings recorded(core::SensorReadings readings) {
+  const auto round = [](auto& numbers) {
+    for (double& number : numbers) {
+      // GCC 12 forgets to round the last two of ten without it.
+      volatile const auto kept = static_cast<float>(number);
+      number = static_cast<double>(kept);
+    }
+  };
+  round(readings.q);
+  round(readings.dq);
+  round(readings.tau);
+  round(readings.w_WB_B);
+  round(readings.f_B);
+  return readings;
+}
+
 }  // namespace
 
 Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& robot,
@@ -68,18 +85,23 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
       static_cast<std::size_t>(config.control.wrench_mpc.horizon);
 }
 
-core::JointCommand Pipeline::tick(const core::SensorReadings& readings, core::DepthSource& camera) {
+core::JointCommand Pipeline::tick(const core::SensorReadings& measured, core::DepthSource& camera) {
   events_ = {};
+  const core::SensorReadings readings = recorded(measured);
   if (control_ && readings.stamp <= state_.stamp) return command_;
+  if (!control_) events_.put_down = mission_.start;
+  events_.expected = control_ ? control_->expected_contact() : control::ContactExpectation::support;
   const Stopwatch watch;
   const std::size_t before = core::allocation_count();
-  state_ = estimator_.update(
-      readings, control_ ? control_->expected_contact() : control::ContactExpectation::support);
+  state_ = estimator_.update(readings, *events_.expected);
   events_.allocations += core::allocation_count() - before;
   events_.estimator_ms = watch.milliseconds();
   if (control_) control_->observe_drives(readings);
   run_stages(camera);
-  if (calmed_down_) estimator_.correct_height(height_aimed_at(control_->plan()));
+  if (calmed_down_) {
+    events_.map_height = height_aimed_at(control_->plan());
+    estimator_.correct_height(*events_.map_height);
+  }
   return command_;
 }
 

@@ -46,6 +46,11 @@ struct DecisionQuestion;
 
 /// What the stages produced in one tick, for logs; empty where nothing was due.
 struct PipelineEvents {
+  /// What the estimator took in besides the readings: its start in the first tick, and what the
+  /// controller expected of the feet; empty when it did not run.
+  std::optional<control::StartPlace> put_down;
+  std::optional<control::ContactExpectation> expected;
+  std::optional<double> map_height;             ///< Told to the estimator after this tick [m].
   std::optional<core::RobotState> anchor;       ///< The map was tied to the soles of this state.
   const SightQuestion* seen = nullptr;          ///< Went to perception; valid until the next tick.
   const DecisionQuestion* asked = nullptr;      ///< Went to planning; valid until the next tick.
@@ -121,7 +126,7 @@ class Pipeline {
 
   /// One exchange: sensor readings and camera in, joint commands out. Readings with an old stamp
   /// change nothing.
-  core::JointCommand tick(const core::SensorReadings& readings, core::DepthSource& camera);
+  core::JointCommand tick(const core::SensorReadings& measured, core::DepthSource& camera);
   /// The same on a state known from elsewhere, for `--state truth`.
   core::JointCommand tick(const core::RobotState& state, core::DepthSource& camera);
 
@@ -129,6 +134,9 @@ class Pipeline {
   /// next one, or for a landing target once it has been planned. @pre tick() has run.
   void apply(const core::OperatorCommand& command);
   [[nodiscard]] bool held() const { return desk_.mode() != OperatorDesk::Mode::free; }
+
+  /// Takes back the end by a refusal: the ground may look better later. @pre end() == refused
+  void reopen();
 
   /// What a decision could be made from now; nothing while the robot is in the air or limp.
   [[nodiscard]] std::optional<DecisionView> decision_view() const;

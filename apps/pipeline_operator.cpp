@@ -31,6 +31,15 @@ void Pipeline::apply(const core::OperatorCommand& command) {
   }
 }
 
+void Pipeline::reopen() {
+  HOPSCOTCH_CHECK(end_ == MissionEnd::refused);
+  end_.reset();
+  end_reason_ = {};
+  refused_since_.reset();
+  failed_distances_.clear();
+  task_.target.reset();
+}
+
 std::optional<DecisionView> Pipeline::decision_view() const {
   if (!control_) return std::nullopt;
   const RobotPhase phase = control_->phase();

@@ -64,7 +64,7 @@ Eigen::Isometry3d camera_pose(const msgs::DepthRecord& record) {
   return X_WB * record.frame.X_BC;
 }
 
-/// Takes the messages of a log in their order.
+/// Perception and target choice of a recorded run. Takes the messages of a log in their order.
 class LogReplay {
  public:
   LogReplay(const ProgramConfig& config, const model::RobotParameters& robot,
@@ -89,7 +89,6 @@ class LogReplay {
 
   void question(core::Stamp now, const msgs::TargetQuestion& asked) {
     finish_look();
-    from_truth_ = from_truth_ || asked.source == core::TargetSource::truth;
     const core::TerrainMap* map = map_of(asked.map_stamp);
     if (map == nullptr) return;  // of the true terrain, or a log that lost its beginning
     const footstep::LandingTask task{.goal_x = asked.goal_x,
@@ -149,7 +148,6 @@ class LogReplay {
   }
 
   [[nodiscard]] const ReplaySummary& summary() const { return summary_; }
-  [[nodiscard]] bool from_truth() const { return from_truth_; }
 
  private:
   Stages stages_;
@@ -160,11 +158,10 @@ class LogReplay {
   Eigen::Isometry3d X_WC_ = Eigen::Isometry3d::Identity();
   perception::MapStatus status_ = perception::MapStatus::blind;
   bool fused_ = false;  ///< A frame since the last look.
-  bool from_truth_ = false;
   ReplaySummary summary_;
 };
 
-void check_log(const fs::path& log, const msgs::RunLogSummary& read, const LogReplay& replay) {
+void check_log(const fs::path& log, const msgs::RunLogSummary& read, const ReplaySummary& replay) {
   const auto reject = [&](const std::string& why) {
     throw core::ConfigError(log.string() + ": " + why);
   };
@@ -174,9 +171,8 @@ void check_log(const fs::path& log, const msgs::RunLogSummary& read, const LogRe
   if (read.malformed > 0) {
     reject(std::to_string(read.malformed) + " messages of known channels cannot be decoded");
   }
-  if (replay.from_truth()) reject("was recorded with --perception truth: nothing was perceived");
-  if (replay.summary().frames == 0) {
-    reject("holds no depth frames; record with `hopscotch run --log-depth`");
+  if (replay.frames + replay.states.compared + replay.plans.compared == 0) {
+    reject("holds nothing that could be run again: no readings, no questions, no depth frames");
   }
 }
 
@@ -222,16 +218,27 @@ ReplaySummary replay_log(const fs::path& log, const ProgramConfig& config,
                          const model::RobotParameters& robot, const LookObserver& observe) {
   if (!fs::is_regular_file(log)) throw core::ConfigError(log.string() + ": is no file");
   LogReplay replay(config, robot, observe);
+  MotionReplay motion(config, robot);
   msgs::RunLogHandlers on;
+  on.prior = [&](core::Stamp, const auto& message) { motion.prior(message.value); };
+  on.sensors = [&](core::Stamp, const auto& message) { motion.sensors(message.value); };
+  on.state = [&](core::Stamp, const auto& message) { motion.state(message.value); };
+  on.plan = [&](core::Stamp, const auto& message) { motion.plan(message.value); };
   on.anchor = [&](core::Stamp, const auto& message) { replay.anchor(message.value); };
   on.depth = [&](core::Stamp, const auto& message) { replay.depth(message.value); };
-  on.question = [&](core::Stamp now, const auto& message) { replay.question(now, message.value); };
+  on.question = [&](core::Stamp now, const auto& message) {
+    replay.question(now, message.value);
+    motion.question(message.value);
+  };
   on.terrain = [&](core::Stamp, const auto& message) { replay.terrain(message.value); };
   on.target = [&](core::Stamp, const auto& message) { replay.target(message.value); };
   const msgs::RunLogSummary read = msgs::read_run_log(log, on);
   replay.finish_look();
-  check_log(log, read, replay);
-  return replay.summary();
+  ReplaySummary summary = replay.summary();
+  summary.states = motion.states();
+  summary.plans = motion.plans();
+  check_log(log, read, summary);
+  return summary;
 }
 
 ReplaySummary replay_folder(const fs::path& folder, const DepthScaling& scaling,

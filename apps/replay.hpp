@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "apps/depth_image_file.hpp"
+#include "apps/motion_replay.hpp"
 #include "apps/program_config.hpp"
 #include "apps/terrain_json.hpp"
 #include "core/depth_frame.hpp"
@@ -31,11 +32,18 @@ struct ReplaySummary {
   int looks = 0;
   int terrains_differing = 0;
   int targets_differing = 0;
+  Agreement states;  ///< Of the estimator.
+  Agreement plans;
+
+  [[nodiscard]] int differing() const {
+    return terrains_differing + targets_differing + states.differing + plans.differing;
+  }
 };
 
-/// Runs perception and target choice again on a log that was recorded with depth.
-/// @throws core::ConfigError if the file is no such log, is damaged or is cut short; `observe` has
-///         then seen what stands before the damage.
+/// Runs estimator and planner again on a log, and perception and target choice where it was
+/// recorded with depth.
+/// @throws core::ConfigError if the file is no log, holds nothing to run again, is damaged or is
+///         cut short; `observe` has then seen what stands before the damage.
 ReplaySummary replay_log(const std::filesystem::path& log, const ProgramConfig& config,
                          const model::RobotParameters& robot, const LookObserver& observe);
 

@@ -8,7 +8,7 @@ namespace hopscotch::apps {
 
 namespace {
 
-ProgramConfig tuning_for_the_floor(const RobotConfig& config) {
+ProgramConfig tuning_for(const RobotConfig& config) {
   ProgramConfig tuning = config.tuning;
   tuning.footstep.preference.nominal_distance = config.session.jump_distance;
   return tuning;
@@ -28,9 +28,11 @@ Pipeline::TerrainOracle level_floor() {
 
 }  // namespace
 
-RobotBrain::RobotBrain(const RobotConfig& config)
-    : pipeline_(
-          tuning_for_the_floor(config), config.robot, {}, level_floor(),
+RobotBrain::RobotBrain(const RobotConfig& config, core::DepthSource* eyes)
+    : camera_(eyes != nullptr ? *eyes : nothing_),
+      pipeline_(
+          tuning_for(config), config.robot, {},
+          eyes != nullptr ? Pipeline::TerrainOracle{} : level_floor(),
           config.pacing.mode == Pacing::Mode::real_time ? Threading::threads : Threading::lockstep),
       jumps_per_command_(config.session.jumps_per_command) {}
 
@@ -43,6 +45,11 @@ core::JointCommand RobotBrain::tick(const core::SensorReadings& readings) {
   const core::JointCommand command = pipeline_.tick(readings, camera_);
   if (!ticked_) hold();
   ticked_ = true;
+  if (pipeline_.end() == MissionEnd::refused) {
+    refusal_ = pipeline_.end_reason();
+    pipeline_.reopen();
+    hold();
+  }
   const core::RobotPhase phase = pipeline_.status().phase;
   if (phase == core::RobotPhase::landing && phase_ == core::RobotPhase::flight) {
     ++jumps_;

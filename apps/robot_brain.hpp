@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "apps/pipeline.hpp"
 #include "apps/robot_config.hpp"
@@ -8,10 +9,12 @@
 
 namespace hopscotch::apps {
 
-/// The whole pipeline for the robot's session, on a floor that the operator vouches for as level.
+/// The whole pipeline for the robot's session: on ground that it sees, or on a floor that the
+/// operator vouches for as level.
 class RobotBrain {
  public:
-  explicit RobotBrain(const RobotConfig& config);
+  /// @param eyes Outlives this object; null: the floor is level.
+  RobotBrain(const RobotConfig& config, core::DepthSource* eyes);
 
   /// Refers to this object.
   [[nodiscard]] SessionBrain session_brain();
@@ -21,11 +24,15 @@ class RobotBrain {
   /// @pre ticked()
   void apply(const core::OperatorCommand& command);
   [[nodiscard]] const Pipeline& pipeline() const { return pipeline_; }
+  /// Why it did not jump when it was free to, once: it holds then, until the next `jump`.
+  [[nodiscard]] std::optional<core::Refusal> take_refusal() {
+    return std::exchange(refusal_, std::nullopt);
+  }
   /// Landed so far.
   [[nodiscard]] int jumps() const { return jumps_; }
 
  private:
-  /// Sees nothing: no depth camera is connected.
+  /// On a floor that is known to be level.
   class NoCamera final : public core::DepthSource {
    public:
     std::optional<core::DepthFrame> poll(core::Stamp) override { return std::nullopt; }
@@ -34,13 +41,15 @@ class RobotBrain {
   core::JointCommand tick(const core::SensorReadings& readings);
   void hold();
 
-  NoCamera camera_;
+  NoCamera nothing_;
+  core::DepthSource& camera_;
   Pipeline pipeline_;
   bool ticked_ = false;
   core::RobotPhase phase_ = core::RobotPhase::stand;
   int jumps_ = 0;
   int jumps_per_command_;
   int jumps_left_ = 0;
+  std::optional<core::Refusal> refusal_;
 };
 
 /// The posture that a stop in flight lands with: that of standing [rad].

@@ -14,7 +14,7 @@ SessionConfig SessionConfig::load(const ConfigReader& section) {
   config.ramp = section.number("ramp_s", Range::closed(0.5, 10.0));  // shorter jerks the legs
   config.settle = section.number("settle_s", Range::closed(0.0, 60.0));
   config.enable_timeout = section.number("enable_timeout_s", Range::above(0.0, 60.0));
-  static_cast<void>(section.choice("floor", {"level"}));
+  config.has_eyes = section.choice("floor", {"level", "camera"}) == 1;
   config.jump_distance = section.number("jump_m", Range::closed(0.05, 0.60));
   config.jumps_per_command = section.integer("jumps_per_command", 0, 1'000'000);
   section.finish();

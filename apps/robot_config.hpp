@@ -22,7 +22,8 @@ struct SessionConfig {
   double ramp = 0.0;            ///< Gains rise from zero to the controller's over so long [s].
   double settle = 0.0;          ///< Holding the pose afterwards [s].
   double enable_timeout = 0.0;  ///< [s]
-  double jump_distance = 0.0;   ///< Of jumps on the level floor [m].
+  bool has_eyes = false;        ///< Ground by the depth camera; else a level floor is vouched for.
+  double jump_distance = 0.0;   ///< That is aimed at [m].
   int jumps_per_command = 0;    ///< Then it holds; 0: it goes on.
 
   static SessionConfig load(const core::ConfigReader& section);

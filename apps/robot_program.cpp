@@ -65,7 +65,9 @@ RobotProgram::RobotProgram(const RobotConfig& config, Wire wire)
       run_id_(wall_clock_us()),
       gate_(run_id_, run_id_),
       live_(live_url(), box_),
-      events_(run_id_) {}
+      events_(run_id_) {
+  if (config.session.has_eyes) eyes_.emplace(live_url());
+}
 
 hardware::PlantPorts RobotProgram::make_ports() {
   hardware::PlantPorts ports;
@@ -148,6 +150,10 @@ void RobotProgram::attend() {
     for (const core::OperatorAnswer& said : brain_->pipeline().events().answers) {
       if (said.command.sequence != 0) send(said);
     }
+    if (const std::optional<core::Refusal> refusal = brain_->take_refusal()) {
+      std::printf("robot: %.3f s: no jump: %s; it holds\n", now_.seconds(),
+                  refusal->text().c_str());
+    }
     // The mission's end by the operator's stop: the robot stands, its drives go off.
     if (brain_->pipeline().end() == MissionEnd::stopped && !finishing_) {
       finishing_ = true;
@@ -202,7 +208,7 @@ void RobotProgram::enable(const core::OperatorCommand& command) {
   }
   const std::string obstacle = session_.obstacle();
   if (!obstacle.empty()) return answer(command, {Reason::not_homed, obstacle}, "");
-  brain_ = std::make_unique<RobotBrain>(config_);
+  brain_ = std::make_unique<RobotBrain>(config_, eyes_ ? &*eyes_ : nullptr);
   session_.enable(brain_->session_brain());
   answer(command, {}, "the drives turn on and the robot stands up, then waits for `command jump`");
 }

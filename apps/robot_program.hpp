@@ -11,6 +11,7 @@
 
 #include "apps/command_gate.hpp"
 #include "apps/commands.hpp"
+#include "apps/depth_inbox.hpp"
 #include "apps/live_run.hpp"
 #include "apps/real_time.hpp"
 #include "apps/robot_brain.hpp"
@@ -79,6 +80,7 @@ class RobotProgram {
   bool world_gone_ = false;
   hardware::RobotPlant plant_;
   RobotSession session_;
+  std::optional<DepthInbox> eyes_;
   std::unique_ptr<RobotBrain> brain_;
 
   CommandBox box_;

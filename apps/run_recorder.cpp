@@ -19,9 +19,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Joint states and forces change slowly against a millisecond: every fourth tick keeps the log
-/// small.
-constexpr std::int64_t kTicksPerRecord = 4;
+/// Motion is smooth but for the moments around a change of phase or contact.
+constexpr int kTicksPerRecord = 20;
+constexpr int kTicksPerLivelyRecord = 4;
+constexpr int kLivelyTicks = 20;
+
+/// The larger one; a NaN counts as none.
+void keep_largest(const std::optional<double>& value, double& largest) {
+  if (value) largest = std::fmax(*value, largest);
+}
 
 fs::path make_partial(const fs::path& folder) {
   if (fs::exists(folder) && !fs::is_regular_file(RunFolder{folder}.result())) {
@@ -168,21 +174,50 @@ void RunRecorder::record_decision(core::Stamp now, const PipelineEvents& events)
 void RunRecorder::record(const TickRecord& tick) {
   const core::Stamp now = tick.truth.state.stamp;
   const PipelineEvents& events = tick.events;
+  record_prior(now, events);
   put(now, tick.readings);
   if (log_depth_) record_perception(now, events);
+  record_question(now, events);
   record_decision(now, events);
   for (const core::OperatorAnswer& answer : events.answers) record(now, answer);
-  if (events.perception_ms) times_.perception_ms = *events.perception_ms;
-  if (events.planning_ms) times_.plan_ms = *events.planning_ms;
-  if (events.mpc_ms) times_.mpc_ms = *events.mpc_ms;
-  if (events.estimator_ms) times_.estimator_ms = *events.estimator_ms;
-  times_.tick_ms = events.tick_ms;
-  if (ticks_++ % kTicksPerRecord != 0) return;
+  keep_largest(events.perception_ms, times_.perception_ms);
+  keep_largest(events.planning_ms, times_.plan_ms);
+  keep_largest(events.mpc_ms, times_.mpc_ms);
+  keep_largest(events.estimator_ms, times_.estimator_ms);
+  keep_largest(events.tick_ms, times_.tick_ms);
+  if (!motion_due(tick)) return;
   put(now, tick.state);
   put(now, tick.command);
   put(now, msgs::Status{tick.status, tick.jump, 0, tick.held, times_});
   put(now, msgs::Truth{now, tick.truth.state, tick.truth.ground, tick.truth.tau});
   times_ = {};
+}
+
+bool RunRecorder::motion_due(const TickRecord& tick) {
+  const auto& contact = tick.truth.state.contact;
+  const bool changed = tick.status.phase != phase_ || contact != contact_;
+  phase_ = tick.status.phase;
+  contact_ = contact;
+  since_change_ = changed ? 0 : since_change_ + 1;
+  const int spacing = since_change_ < kLivelyTicks ? kTicksPerLivelyRecord : kTicksPerRecord;
+  if (++since_record_ < spacing) return false;
+  since_record_ = 0;
+  return true;
+}
+
+/// Before the readings that it holds for.
+void RunRecorder::record_prior(core::Stamp now, const PipelineEvents& events) {
+  if (!events.expected) return;
+  if (events.put_down || told_height_ || *events.expected != expected_) {
+    msgs::EstimatorPrior prior{.stamp = now,
+                               .start = std::nullopt,
+                               .expected = static_cast<std::uint8_t>(*events.expected),
+                               .height = told_height_.value_or(core::kNaN)};
+    if (events.put_down) prior.start.emplace(events.put_down->p_WS, events.put_down->yaw);
+    write(maker_.make(now, prior));
+  }
+  expected_ = *events.expected;
+  told_height_ = events.map_height;
 }
 
 void RunRecorder::close_log() {
@@ -217,6 +252,9 @@ void RunRecorder::record_perception(core::Stamp now, const PipelineEvents& event
   if (events.seen != nullptr) {
     write(maker_.make(now, msgs::DepthRecord{events.seen->frame, events.seen->at_exposure}));
   }
+}
+
+void RunRecorder::record_question(core::Stamp now, const PipelineEvents& events) {
   if (events.asked == nullptr) return;
   const footstep::LandingTask& task = events.asked->task;
   write(maker_.make(now, msgs::TargetQuestion{.stamp = now,

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,10 +53,14 @@ class RunRecorder {
   RunFolder finish(const RunResult& result);
 
  private:
+  static constexpr int kLongAgo = 1000;
   void write_sources(const RunRequest& request, const RunSources& sources) const;
   void write_black_box(const RunResult& result) const;
   void record_decision(core::Stamp now, const PipelineEvents& events);
   void record_perception(core::Stamp now, const PipelineEvents& events);
+  void record_question(core::Stamp now, const PipelineEvents& events);
+  void record_prior(core::Stamp now, const PipelineEvents& events);
+  [[nodiscard]] bool motion_due(const TickRecord& tick);
   void put(const msgs::Event& event);
   void write(const msgs::Event& event);
   void close_log();
@@ -72,10 +78,15 @@ class RunRecorder {
   BlackBox black_box_;
   msgs::Event scene_;
   std::vector<Listener> listeners_;
-  msgs::StageTimes times_;  ///< Since the last status.
-  std::int64_t ticks_ = 0;
-  core::Stamp next_map_;      ///< No map is recorded before.
-  core::Stamp next_refusal_;  ///< The same refusal is not repeated before.
+  msgs::StageTimes times_;       ///< Since the last status.
+  int since_record_ = kLongAgo;  ///< Of the motion [ticks].
+  int since_change_ = kLongAgo;  ///< Of phase or contact [ticks].
+  core::RobotPhase phase_ = core::RobotPhase::stand;
+  std::array<bool, core::kLegs> contact_{};
+  control::ContactExpectation expected_ = control::ContactExpectation::support;
+  std::optional<double> told_height_;  ///< By the map, after the last tick [m].
+  core::Stamp next_map_;               ///< No map is recorded before.
+  core::Stamp next_refusal_;           ///< The same refusal is not repeated before.
   core::Reason refused_ = core::Reason::none;
   bool finished_ = false;
 };

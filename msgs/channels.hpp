@@ -22,6 +22,7 @@ inline constexpr std::string_view kStatusChannel = "HOP_STATUS";
 /// With `--log-depth` only: all that perception and target choice were given, in that order.
 inline constexpr std::string_view kDepthChannel = "HOP_DEPTH";
 inline constexpr std::string_view kAnchorChannel = "HOP_ANCHOR";
+inline constexpr std::string_view kPriorChannel = "HOP_PRIOR";
 inline constexpr std::string_view kQuestionChannel = "HOP_QUESTION";
 /// Simulation only, in logs only: nothing that controls may listen to these two.
 inline constexpr std::string_view kTruthChannel = "HOP_TRUTH";

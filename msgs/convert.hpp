@@ -13,9 +13,10 @@
 #include "core/sensor_readings.hpp"
 #include "msgs/messages.hpp"
 
-/// Between values and the bytes of LCM messages, both ways, without loss. One overload of `encode`
-/// and one specialisation of `decode` per message of `msgs/*.lcm`. Messages have the same fixed
-/// capacities as the values, so hostile bytes can neither allocate nor overrun.
+/// Between values and the bytes of LCM messages, both ways. One overload of `encode` and one
+/// specialisation of `decode` per message of `msgs/*.lcm`. What a replay computes from or is
+/// compared with comes back to the bit; measurements and motions travel as 32-bit numbers. Lists
+/// are bounded, so hostile bytes can neither overrun nor allocate more than they are long.
 namespace hopscotch::msgs {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -39,6 +40,7 @@ struct Tagged {
 /// Aborts unless the image has the size that its intrinsics state.
 [[nodiscard]] Bytes encode(const DepthRecord& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const AnchorRecord& value, const Tag& tag);
+[[nodiscard]] Bytes encode(const EstimatorPrior& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const TargetQuestion& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const TargetCommand& value, const Tag& tag);
 [[nodiscard]] Bytes encode(const ModeCommand& value, const Tag& tag);
@@ -70,6 +72,8 @@ template <>
 std::optional<Tagged<DepthRecord>> decode(std::span<const std::uint8_t> bytes);
 template <>
 std::optional<Tagged<AnchorRecord>> decode(std::span<const std::uint8_t> bytes);
+template <>
+std::optional<Tagged<EstimatorPrior>> decode(std::span<const std::uint8_t> bytes);
 template <>
 std::optional<Tagged<TargetQuestion>> decode(std::span<const std::uint8_t> bytes);
 template <>

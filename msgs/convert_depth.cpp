@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "hopscotch_msgs/depth.hpp"
-#include "hopscotch_msgs/question.hpp"
 #include "msgs/convert.hpp"
 #include "msgs/wire.hpp"
 #include "msgs/wire_state.hpp"
@@ -86,7 +85,7 @@ Bytes encode(const DepthRecord& value, const Tag& tag) {
   hopscotch_msgs::depth message{};
   wire::set_header(frame.stamp, tag, message);
   wire::set_header(value.at_exposure.stamp, tag, message.at_exposure);
-  wire::put(value.at_exposure, message.at_exposure);
+  wire::put_state(value.at_exposure, message.at_exposure);
   wire::put(Eigen::Vector3d(frame.X_BC.translation()), message.p_BC);
   wire::put(Eigen::Matrix3d(frame.X_BC.linear()), message.R_BC);
   const core::CameraIntrinsics& lens = frame.intrinsics;
@@ -112,11 +111,10 @@ Bytes encode(const DepthRecord& value, const Tag& tag) {
 
 template <>
 std::optional<Tagged<DepthRecord>> decode(std::span<const std::uint8_t> bytes) {
-  const auto message = wire::from_bytes<hopscotch_msgs::depth>(bytes);
+  const auto message = wire::from_bytes_with_list<hopscotch_msgs::depth>(bytes);
   if (!message) return std::nullopt;
   DepthRecord value;
-  value.at_exposure.stamp = wire::stamp_of(message->at_exposure);
-  wire::get(message->at_exposure, value.at_exposure);
+  wire::get_state(message->at_exposure, value.at_exposure);
   core::DepthFrame& frame = value.frame;
   frame.stamp = wire::stamp_of(*message);
   Eigen::Vector3d p_BC;
@@ -129,62 +127,6 @@ std::optional<Tagged<DepthRecord>> decode(std::span<const std::uint8_t> bytes) {
                       message->fy,    message->cx,     message->cy};
   if (!inflate(*message, frame)) return std::nullopt;
   return Tagged<DepthRecord>{wire::tag_of(*message), std::move(value)};
-}
-
-Bytes encode(const AnchorRecord& value, const Tag& tag) {
-  return encode(value.state, tag);
-}
-
-template <>
-std::optional<Tagged<AnchorRecord>> decode(std::span<const std::uint8_t> bytes) {
-  const auto state = decode<core::RobotState>(bytes);
-  if (!state) return std::nullopt;
-  return Tagged<AnchorRecord>{state->tag, {state->value}};
-}
-
-Bytes encode(const TargetQuestion& value, const Tag& tag) {
-  hopscotch_msgs::question message{};
-  wire::set_header(value.stamp, tag, message);
-  wire::set_header(value.rest.stamp, tag, message.rest);
-  wire::put(value.rest, message.rest);
-  message.map_stamp_ns = value.map_stamp.nanoseconds;
-  message.for_operator = static_cast<std::int8_t>(value.for_operator);
-  message.goal_x = value.goal_x;
-  message.goal_heading_rad = value.goal_heading;
-  message.source = wire::number_of(value.source);
-  message.has_override = value.target.has_value();
-  const core::TargetOverride wanted = value.target.value_or(core::TargetOverride{});
-  message.distance = wanted.distance;
-  message.height = wanted.height;
-  message.lateral = wanted.lateral;
-  message.yaw_rad = wanted.yaw;
-  message.height_doubt = value.height_doubt;
-  return wire::to_bytes(message);
-}
-
-template <>
-std::optional<Tagged<TargetQuestion>> decode(std::span<const std::uint8_t> bytes) {
-  const auto message = wire::from_bytes<hopscotch_msgs::question>(bytes);
-  if (!message) return std::nullopt;
-  TargetQuestion value;
-  value.stamp = wire::stamp_of(*message);
-  value.rest.stamp = wire::stamp_of(message->rest);
-  wire::get(message->rest, value.rest);
-  value.map_stamp = core::Stamp{message->map_stamp_ns};
-  value.for_operator = message->for_operator != 0;
-  value.goal_x = message->goal_x;
-  value.goal_heading = message->goal_heading_rad;
-  value.height_doubt = message->height_doubt;
-  if (!wire::get_enum(message->source, core::TargetSource::operator_override, value.source)) {
-    return std::nullopt;
-  }
-  if (message->has_override != 0) {
-    value.target = core::TargetOverride{.distance = message->distance,
-                                        .height = message->height,
-                                        .lateral = message->lateral,
-                                        .yaw = message->yaw_rad};
-  }
-  return Tagged<TargetQuestion>{wire::tag_of(*message), value};
 }
 
 }  // namespace hopscotch::msgs

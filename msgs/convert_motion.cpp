@@ -1,6 +1,5 @@
 #include "hopscotch_msgs/command.hpp"
 #include "hopscotch_msgs/plan.hpp"
-#include "hopscotch_msgs/robot_state.hpp"
 #include "hopscotch_msgs/sensors.hpp"
 #include "msgs/convert.hpp"
 #include "msgs/wire.hpp"
@@ -8,34 +7,6 @@
 #include "msgs/wire_target.hpp"
 
 namespace hopscotch::msgs {
-
-static_assert(hopscotch_msgs::plan::MAX_KNOTS == core::JumpPlan::kMaxKnots);
-
-namespace wire {
-
-void put(const core::RobotState& from, hopscotch_msgs::robot_state& to) {
-  put(from.p_WB, to.p_WB);
-  put(from.R_WB, to.R_WB);
-  put(from.v_WB, to.v_WB);
-  put(from.w_WB, to.w_WB);
-  put(from.q, to.q);
-  put(from.dq, to.dq);
-  for (std::size_t leg = 0; leg < from.contact.size(); ++leg) to.contact[leg] = from.contact[leg];
-}
-
-void get(const hopscotch_msgs::robot_state& from, core::RobotState& to) {
-  to.stamp = stamp_of(from);
-  get(from.p_WB, to.p_WB);
-  get(from.R_WB, to.R_WB);
-  get(from.v_WB, to.v_WB);
-  get(from.w_WB, to.w_WB);
-  get(from.q, to.q);
-  get(from.dq, to.dq);
-  for (std::size_t leg = 0; leg < to.contact.size(); ++leg)
-    to.contact[leg] = from.contact[leg] != 0;
-}
-
-}  // namespace wire
 
 namespace {
 
@@ -132,19 +103,12 @@ std::optional<Tagged<core::SensorReadings>> decode(std::span<const std::uint8_t>
 }
 
 Bytes encode(const core::RobotState& value, const Tag& tag) {
-  hopscotch_msgs::robot_state message{};
-  wire::set_header(value.stamp, tag, message);
-  wire::put(value, message);
-  return wire::to_bytes(message);
+  return wire::encode_state<hopscotch_msgs::robot_state>(value, tag);
 }
 
 template <>
 std::optional<Tagged<core::RobotState>> decode(std::span<const std::uint8_t> bytes) {
-  const auto message = wire::from_bytes<hopscotch_msgs::robot_state>(bytes);
-  if (!message) return std::nullopt;
-  core::RobotState value;
-  wire::get(*message, value);
-  return Tagged<core::RobotState>{wire::tag_of(*message), value};
+  return wire::decode_state<hopscotch_msgs::robot_state>(bytes);
 }
 
 Bytes encode(const core::JointCommand& value, const Tag& tag) {
@@ -180,13 +144,14 @@ Bytes encode(const core::JumpPlan& value, const Tag& tag) {
   wire::put(value.target, message.target);
   put_summary(value, message);
   message.knot_count = static_cast<std::int32_t>(value.knot_count);
+  message.knots.resize(value.knot_count);
   for (std::size_t i = 0; i < value.knot_count; ++i) put_knot(value.knots[i], message.knots[i]);
   return wire::to_bytes(message);
 }
 
 template <>
 std::optional<Tagged<core::JumpPlan>> decode(std::span<const std::uint8_t> bytes) {
-  const auto message = wire::from_bytes<hopscotch_msgs::plan>(bytes);
+  const auto message = wire::from_bytes_with_list<hopscotch_msgs::plan>(bytes);
   if (!message) return std::nullopt;
   Tagged<core::JumpPlan> result{wire::tag_of(*message), {}};
   core::JumpPlan& value = result.value;

@@ -20,11 +20,11 @@ Bytes encode(const Status& value, const Tag& tag) {
   wire::put_wrenches(value.control.wrenches, message);
   message.deadline_misses = value.deadline_misses;
   message.held = value.held;
-  message.tick_ms = value.times.tick_ms;
-  message.mpc_ms = value.times.mpc_ms;
-  message.plan_ms = value.times.plan_ms;
-  message.perception_ms = value.times.perception_ms;
-  message.estimator_ms = value.times.estimator_ms;
+  message.tick_ms = static_cast<float>(value.times.tick_ms);
+  message.mpc_ms = static_cast<float>(value.times.mpc_ms);
+  message.plan_ms = static_cast<float>(value.times.plan_ms);
+  message.perception_ms = static_cast<float>(value.times.perception_ms);
+  message.estimator_ms = static_cast<float>(value.times.estimator_ms);
   return wire::to_bytes(message);
 }
 
@@ -54,7 +54,7 @@ Bytes encode(const Truth& value, const Tag& tag) {
   hopscotch_msgs::truth message{};
   wire::set_header(value.stamp, tag, message);
   wire::set_header(value.state.stamp, tag, message.state);
-  wire::put(value.state, message.state);
+  wire::put_state(value.state, message.state);
   wire::put_wrenches(value.ground, message);
   wire::put(value.tau, message.tau);
   return wire::to_bytes(message);
@@ -66,7 +66,7 @@ std::optional<Tagged<Truth>> decode(std::span<const std::uint8_t> bytes) {
   if (!message) return std::nullopt;
   Truth value;
   value.stamp = wire::stamp_of(*message);
-  wire::get(message->state, value.state);
+  wire::get_state(message->state, value.state);
   wire::get_wrenches(*message, value.ground);
   wire::get(message->tau, value.tau);
   return Tagged<Truth>{wire::tag_of(*message), value};

@@ -16,6 +16,7 @@ Dispatcher::Dispatcher(RunLogHandlers handlers) : handlers_(std::move(handlers))
   on(kTargetChannel, handlers_.target);
   on(kDepthChannel, handlers_.depth);
   on(kAnchorChannel, handlers_.anchor);
+  on(kPriorChannel, handlers_.prior);
   on(kQuestionChannel, handlers_.question);
   on(kTargetCommandChannel, handlers_.target_command);
   on(kModeCommandChannel, handlers_.mode_command);

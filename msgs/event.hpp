@@ -37,6 +37,9 @@ constexpr std::string_view channel_of(const DepthRecord&) {
 constexpr std::string_view channel_of(const AnchorRecord&) {
   return kAnchorChannel;
 }
+constexpr std::string_view channel_of(const EstimatorPrior&) {
+  return kPriorChannel;
+}
 constexpr std::string_view channel_of(const TargetQuestion&) {
   return kQuestionChannel;
 }

@@ -53,6 +53,20 @@ struct TargetQuestion {
   bool for_operator = false;                   ///< By the operator, not as the next best one.
 };
 
+/// HOP_PRIOR: what the estimator took in besides the readings, from the next ones on. Recorded when
+/// it changes.
+struct EstimatorPrior {
+  /// Where the robot was put down, which starts the filter.
+  struct Start {
+    Eigen::Vector3d p_WS = Eigen::Vector3d::Zero();  ///< Mid-point of the soles [m].
+    double yaw = 0.0;                                ///< Of the trunk [rad].
+  };
+  core::Stamp stamp;
+  std::optional<Start> start;
+  std::uint8_t expected = 0;   ///< Number of a control::ContactExpectation.
+  double height = core::kNaN;  ///< Of the standing soles by the map, used once [m]; NaN: none.
+};
+
 /// HOP_TARGET_CMD: the operator's landing target; no target clears an earlier one.
 struct TargetCommand {
   core::Stamp stamp;

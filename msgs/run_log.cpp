@@ -7,7 +7,6 @@
 
 #include "core/check.hpp"
 #include "msgs/dispatcher.hpp"
-#include "msgs/event.hpp"
 
 namespace hopscotch::msgs {
 
@@ -16,8 +15,7 @@ constexpr std::int64_t kNanosecondsPerMicrosecond = 1000;  // LCM logs count mic
 }
 
 struct RunLogWriter::File {
-  File(const std::filesystem::path& file, std::uint64_t id)
-      : name(file.string()), log(name, "w"), maker(id) {
+  explicit File(const std::filesystem::path& file) : name(file.string()), log(name, "w") {
     if (!log.good()) throw std::runtime_error("cannot write " + name);
   }
 
@@ -34,65 +32,16 @@ struct RunLogWriter::File {
 
   std::string name;
   lcm::LogFile log;
-  EventMaker maker;
 };
 
 RunLogWriter::RunLogWriter(const std::filesystem::path& file, std::uint64_t run_id)
-    : file_(std::make_unique<File>(file, run_id)) {}
+    : maker_(run_id), file_(std::make_unique<File>(file)) {}
 RunLogWriter::~RunLogWriter() = default;
 RunLogWriter::RunLogWriter(RunLogWriter&&) noexcept = default;
 RunLogWriter& RunLogWriter::operator=(RunLogWriter&&) noexcept = default;
 
 void RunLogWriter::write(const Event& event) {
   file_->append(event);
-}
-void RunLogWriter::write(core::Stamp now, const core::SensorReadings& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const core::RobotState& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const core::JointCommand& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const core::JumpPlan& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const core::OneStepTerrain& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const MapView& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const core::TargetChoice& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const DepthRecord& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const AnchorRecord& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const TargetQuestion& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const TargetCommand& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const ModeCommand& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const Ack& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const Status& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const Truth& value) {
-  file_->append(file_->maker.make(now, value));
-}
-void RunLogWriter::write(core::Stamp now, const Scene& value) {
-  file_->append(file_->maker.make(now, value));
 }
 
 void RunLogWriter::close() {

@@ -28,22 +28,10 @@ class RunLogWriter {
   /// Appends one message on the channel of its type.
   /// @param now Moment of writing; the value keeps its own stamp.
   /// @throws std::runtime_error if the disk refuses.
-  void write(core::Stamp now, const core::SensorReadings& value);
-  void write(core::Stamp now, const core::RobotState& value);
-  void write(core::Stamp now, const core::JointCommand& value);
-  void write(core::Stamp now, const core::JumpPlan& value);
-  void write(core::Stamp now, const core::OneStepTerrain& value);
-  void write(core::Stamp now, const MapView& value);
-  void write(core::Stamp now, const core::TargetChoice& value);
-  void write(core::Stamp now, const DepthRecord& value);
-  void write(core::Stamp now, const AnchorRecord& value);
-  void write(core::Stamp now, const TargetQuestion& value);
-  void write(core::Stamp now, const TargetCommand& value);
-  void write(core::Stamp now, const ModeCommand& value);
-  void write(core::Stamp now, const Ack& value);
-  void write(core::Stamp now, const Status& value);
-  void write(core::Stamp now, const Truth& value);
-  void write(core::Stamp now, const Scene& value);
+  template <typename Value>
+  void write(core::Stamp now, const Value& value) {
+    write(maker_.make(now, value));
+  }
 
   /// Ends the log and says so if something was not written. Without it the destructor ends the log
   /// silently.
@@ -52,6 +40,7 @@ class RunLogWriter {
 
  private:
   struct File;
+  EventMaker maker_;
   std::unique_ptr<File> file_;
 };
 
@@ -68,6 +57,7 @@ struct RunLogHandlers {
   Handler<core::TargetChoice> target;
   Handler<DepthRecord> depth;
   Handler<AnchorRecord> anchor;
+  Handler<EstimatorPrior> prior;
   Handler<TargetQuestion> question;
   Handler<TargetCommand> target_command;
   Handler<ModeCommand> mode_command;

@@ -43,6 +43,18 @@ std::optional<Message> from_bytes(std::span<const std::uint8_t> bytes) {
   return message;
 }
 
+/// The same for messages whose only list has its length right behind the header: generated code
+/// would allocate whatever a damaged length asks for. No element takes less than a byte.
+template <typename Message>
+std::optional<Message> from_bytes_with_list(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t kLength = 8 + 3 * 8;  // behind fingerprint, stamp, sequence and run id
+  if (bytes.size() < kLength + 4) return std::nullopt;
+  std::uint32_t length = 0;
+  for (std::size_t i = 0; i < 4; ++i) length = 256U * length + bytes[kLength + i];
+  if (length > bytes.size()) return std::nullopt;
+  return from_bytes<Message>(bytes);
+}
+
 template <typename Message>
 void set_header(core::Stamp stamp, const Tag& tag, Message& message) {
   message.stamp_ns = stamp.nanoseconds;
@@ -60,26 +72,29 @@ Tag tag_of(const Message& message) {
   return {static_cast<std::uint64_t>(message.sequence), static_cast<std::uint64_t>(message.run_id)};
 }
 
-template <typename Vector, std::size_t N>
-void put(const Vector& from, double (&to)[N]) {
+/// Numbers travel as `double`, or as `float` where that is more than anybody can measure.
+template <typename Vector, typename Number, std::size_t N>
+void put(const Vector& from, Number (&to)[N]) {
   static_assert(Vector::SizeAtCompileTime == N && Vector::IsVectorAtCompileTime);
-  std::copy_n(from.data(), N, to);
+  for (std::size_t i = 0; i < N; ++i) to[i] = static_cast<Number>(from.data()[i]);
 }
-template <typename Vector, std::size_t N>
-void get(const double (&from)[N], Vector& to) {
+template <typename Vector, typename Number, std::size_t N>
+void get(const Number (&from)[N], Vector& to) {
   static_assert(Vector::SizeAtCompileTime == N && Vector::IsVectorAtCompileTime);
   std::copy_n(from, N, to.data());
 }
 
 /// Matrices travel row by row.
-inline void put(const Eigen::Matrix3d& from, double (&to)[3][3]) {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) to[row][column] = from(row, column);
-  }
+template <typename Number>
+void put(const Eigen::Matrix3d& from, Number (&to)[3][3]) {
+  for (int row = 0; row < 3; ++row) put(Eigen::Vector3d(from.row(row)), to[row]);
 }
-inline void get(const double (&from)[3][3], Eigen::Matrix3d& to) {
+template <typename Number>
+void get(const Number (&from)[3][3], Eigen::Matrix3d& to) {
   for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) to(row, column) = from[row][column];
+    Eigen::Vector3d numbers;
+    get(from[row], numbers);
+    to.row(row) = numbers;
   }
 }
 

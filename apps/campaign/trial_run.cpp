@@ -1,9 +1,12 @@
 #include "apps/campaign/trial_run.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "apps/explain.hpp"
 #include "apps/installation.hpp"
 #include "apps/report.hpp"
 #include "apps/stopwatch.hpp"
@@ -45,6 +48,37 @@ RunResult run_to_end(const RunRequest& request,
   return run.result();
 }
 
+/// Runs a trial with a log into a run folder; without the report.
+RunResult log_trial(const TrialMaker& maker, std::int64_t index,
+                    const std::filesystem::path& folder) {
+  const Stopwatch watch;
+  const TrialSetup setup = maker.setup(index);
+  const RunRequest request = maker.request(setup, maker.spec().eyes);
+  const RunSources sources = maker.sources(setup);
+  const std::uint64_t id = run_identity(sources, request);
+  RunRecorder recorder(folder, id, request, sources);
+  RunResult result = run_to_end(request, [&](const TickRecord& tick) { recorder.record(tick); });
+  result.run_id = hex_text(id);
+  result.program = std::string(program_version());
+  result.timing.real_time_factor = 1e3 * result.duration / watch.milliseconds();
+  recorder.finish(result);
+  return result;
+}
+
+/// How a run ended is not why. The few that fail are run again with a log, which tells.
+void explain_failure(const TrialMaker& maker, TrialResult& result) {
+  namespace fs = std::filesystem;
+  const fs::path folder =
+      fs::temp_directory_path() /
+      ("hopscotch-trial-" + std::to_string(getpid()) + "-" + std::to_string(result.index));
+  log_trial(maker, result.index, folder);
+  const Clue first = explain_run({folder}).first;
+  fs::remove_all(folder);
+  if (first.cause == apps::Cause::none || first.cause == apps::Cause::unknown) return;
+  result.sentence = first.sentence + "; then " + result.cause + ": " + result.sentence;
+  result.cause = cause_code(first.cause);
+}
+
 }  // namespace
 
 TrialResult run_trial(const TrialMaker& maker, std::int64_t index) {
@@ -66,23 +100,14 @@ TrialResult run_trial(const TrialMaker& maker, std::int64_t index) {
     const RunResult truth = saw_truth ? run : run_to_end(maker.request(setup, Eyes::truth), {});
     result.truth_outcome = run_outcome_name(truth.outcome);
   }
+  if (!result.succeeded()) explain_failure(maker, result);
   result.wall = 1e-3 * watch.milliseconds();
   return result;
 }
 
 RunResult record_trial(const TrialMaker& maker, std::int64_t index,
                        const std::filesystem::path& folder) {
-  const Stopwatch watch;
-  const TrialSetup setup = maker.setup(index);
-  const RunRequest request = maker.request(setup, maker.spec().eyes);
-  const RunSources sources = maker.sources(setup);
-  const std::uint64_t id = run_identity(sources, request);
-  RunRecorder recorder(folder, id, request, sources);
-  RunResult result = run_to_end(request, [&](const TickRecord& tick) { recorder.record(tick); });
-  result.run_id = hex_text(id);
-  result.program = std::string(program_version());
-  result.timing.real_time_factor = 1e3 * result.duration / watch.milliseconds();
-  recorder.finish(result);
+  RunResult result = log_trial(maker, index, folder);
   write_report(folder);
   return result;
 }

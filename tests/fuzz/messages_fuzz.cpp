@@ -41,7 +41,7 @@ void check(const Value& sample, const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::uint8_t* rest = data + 1;
-  switch (data[0] % 13) {
+  switch (data[0] % 17) {
     case 0: check(samples::sensors(), rest, size - 1); break;
     case 1: check(samples::state(), rest, size - 1); break;
     case 2: check(samples::command(), rest, size - 1); break;
@@ -62,6 +62,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     case 9: check(samples::status(), rest, size - 1); break;
     case 10: check(samples::truth(), rest, size - 1); break;
     case 11: check(samples::scene(), rest, size - 1); break;
+    case 12: check(msgs::AnchorRecord{samples::state()}, rest, size - 1); break;
+    case 13: check(msgs::TargetQuestion{.rest = samples::state()}, rest, size - 1); break;
+    case 14: check(msgs::EstimatorPrior{}, rest, size - 1); break;
+    case 15:
+      check(msgs::DepthRecord{.frame = {.intrinsics = {2, 1, 1.0, 1.0, 1.0, 0.5},
+                                        .depth = {1.0F, 0.0F}},
+                              .at_exposure = samples::state()},
+            rest, size - 1);
+      break;
     default: check(msgs::MapView{}, rest, size - 1); break;
   }
   return 0;

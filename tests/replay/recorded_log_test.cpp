@@ -108,6 +108,23 @@ TEST_F(RecordedLog, LooksTheSameAgainBitByBit) {
   EXPECT_EQ(summary.targets_differing, 0);
 }
 
+TEST_F(RecordedLog, EstimatorAndPlannerDoTheSameAgainBitByBit) {
+  const ReplaySummary summary = replay_log(log(), tuning(), hector(), {});
+  EXPECT_GT(summary.states.compared, 100);
+  EXPECT_EQ(summary.states.differing, 0);
+  EXPECT_GE(summary.plans.compared, 2);
+  EXPECT_EQ(summary.plans.differing, 0);
+}
+
+TEST_F(RecordedLog, AnotherEstimatorAndAnotherPlannerAreNoticed) {
+  ProgramConfig config = tuning();
+  config.control.estimator.filter.encoder_sigma *= 1.5;
+  config.planner.clearance += 0.005;
+  const ReplaySummary summary = replay_log(log(), config, hector(), {});
+  EXPECT_GT(summary.states.differing, 100);
+  EXPECT_EQ(summary.plans.differing, summary.plans.compared);
+}
+
 TEST_F(RecordedLog, SameLogGivesTheSameBytes) {
   const std::vector<std::string> first = lines_of_replay();
   ASSERT_FALSE(first.empty());

@@ -126,8 +126,8 @@ TEST_F(Explain, ARunGoesOnWhenItsLogFindsNoRoom) {
   std::ofstream(folder_ / "scenario.yaml") << "name: full\n"
                                               "slabs:\n  - {x_m: [-1.0, 4.0]}\n"
                                               "goal: {jumps: 1}\n";
-  // No file may grow beyond 1 MiB, as on a disk that is full.
-  const std::string line = "-c \"trap '' XFSZ; ulimit -f 1024; exec " HOPSCOTCH_PROGRAM " run " +
+  // No file may grow beyond a quarter of a MiB, as on a disk that is full.
+  const std::string line = "-c \"trap '' XFSZ; ulimit -f 256; exec " HOPSCOTCH_PROGRAM " run " +
                            (folder_ / "scenario.yaml").string() +
                            " --state truth --perception truth --no-pictures --out " +
                            (folder_ / "out").string() + "\"";

@@ -20,12 +20,12 @@ namespace hopscotch::apps::testing {
 /// buses.
 class WiredRobot {
  public:
-  explicit WiredRobot(const RobotConfig& config)
+  explicit WiredRobot(const RobotConfig& config, core::DepthSource* eyes = nullptr)
       : world(emulated_robot_options(config)),
         script(config.emulation.faults),
         plant(config.plant, config.topology, config.robot, ports(config)),
         session(config, plant, landing_posture(config)),
-        brain(config) {}
+        brain(config, eyes) {}
 
   void run(double seconds) {
     const core::Stamp end = world.now().after(seconds);
@@ -39,6 +39,7 @@ class WiredRobot {
   }
   void tick() {
     session.tick();
+    if (each_tick) each_tick(world.truth().state);
     if (!world.in_harness()) fallen = fallen || sim::fall_of(world.truth()).has_value();
   }
   /// Two exchanges to hear all drives, then the operator's word.
@@ -66,6 +67,7 @@ class WiredRobot {
   RobotSession session;
   RobotBrain brain;
   std::optional<PeriodicWake> wake;  ///< Set: exchanges wait for the clock.
+  std::function<void(const core::RobotState& truth)> each_tick;
   bool fallen = false;
   int stall_ticks = 0;  ///< The host oversleeps its next exchange by so much.
 

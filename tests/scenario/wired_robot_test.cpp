@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 
+#include "sim/sim_camera.hpp"
 #include "tests/scenario/wired_robot.hpp"
 
 namespace hopscotch::apps {
@@ -64,6 +66,72 @@ TEST(WiredRobot, LeapsWithItsStagesOnThreads) {
   EXPECT_EQ(robot.session.stage(), SessionStage::active);
   EXPECT_FALSE(robot.fallen);
   EXPECT_NEAR(robot.world.truth().state.p_WB.x(), 0.25, 0.06);
+}
+
+RobotConfig config_on(const char* scenario) {
+  RobotConfig config = testing::wired_config();
+  config.session.has_eyes = true;
+  config.emulation.scenario = sim::Scenario::from_text(scenario, "ground");
+  return config;
+}
+
+/// A robot with the depth camera of its scenario on the trunk.
+struct SeeingRobot {
+  explicit SeeingRobot(const RobotConfig& config)
+      : camera(config.emulation.scenario.camera, config.robot, config.emulation.scenario.seen, 5),
+        robot(config, &camera) {
+    robot.each_tick = [this](core::RobotState truth) {
+      truth.stamp = robot.world.now();  // in the harness the plant's own time stands still
+      camera.expose(truth);
+    };
+  }
+  sim::SimCamera camera;
+  WiredRobot robot;
+};
+
+TEST(WiredRobot, SeesTheStepThatItLeapsOnto) {
+  SeeingRobot seeing(
+      config_on("name: step\n"
+                "camera: {width: 320, height: 240}\n"
+                "slabs:\n"
+                "  - {x_m: [-1.0, 0.15]}\n"
+                "  - {x_m: [0.15, 2.0], top_m: 0.06}\n"
+                "plant: {latency_ms: 0}\n"
+                "goal: {jumps: 1}\n"));
+  WiredRobot& robot = seeing.robot;
+  ASSERT_TRUE(robot.stand());
+  const double standing = robot.world.truth().state.p_WB.z();
+  robot.ask(core::ModeRequest::jump);
+  ASSERT_TRUE(robot.run_until([&] { return robot.brain.jumps() == 1; }, 8.0));
+  robot.run(2.0);
+  EXPECT_EQ(robot.session.stage(), SessionStage::active);
+  EXPECT_FALSE(robot.fallen);
+  EXPECT_NEAR(robot.world.truth().state.p_WB.z(), standing + 0.06, 0.02);
+}
+
+TEST(WiredRobot, HoldsBeforeAPitAndSaysWhy) {
+  SeeingRobot seeing(
+      config_on("name: brink\n"
+                "camera: {width: 320, height: 240}\n"
+                "slabs:\n"
+                "  - {x_m: [-1.0, 0.12]}\n"
+                "plant: {latency_ms: 0}\n"
+                "goal: {jumps: 1}\n"));
+  WiredRobot& robot = seeing.robot;
+  ASSERT_TRUE(robot.stand());
+  robot.ask(core::ModeRequest::jump);
+  std::optional<core::Refusal> refusal;
+  const auto refused = [&] {
+    if (!refusal) refusal = robot.brain.take_refusal();
+    return refusal.has_value();
+  };
+  ASSERT_TRUE(robot.run_until(refused, 8.0));
+  EXPECT_FALSE(refusal->sentence.empty());
+  robot.run(1.0);
+  EXPECT_EQ(robot.brain.jumps(), 0);
+  EXPECT_EQ(robot.session.stage(), SessionStage::active);
+  EXPECT_FALSE(robot.fallen);
+  EXPECT_TRUE(robot.brain.pipeline().held());
 }
 
 constexpr int kLeftKnee = 3;

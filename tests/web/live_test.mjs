@@ -41,7 +41,7 @@ try {
   await page.waitForFunction(() => /accepted: the robot is held and jumps there/.test(document.getElementById('answers').textContent), null, { timeout: 60000 });
   await page.click('[data-mode=jump]');
   await page.waitForFunction(() => /accepted: the robot jumps on/.test(document.getElementById('answers').textContent), null, { timeout: 60000 });
-  await page.waitForFunction(() => /flight/.test(document.getElementById('now').textContent), null, { timeout: 60000 });
+  await page.waitForFunction(() => /takeoff|flight|landing/.test(document.getElementById('now').textContent), null, { timeout: 60000 });
   await page.click('[data-mode=stop]');
   const ended = await run.ended;
   assert.equal(ended.code, 0, ended.output);

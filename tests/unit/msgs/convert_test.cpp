@@ -409,6 +409,28 @@ TEST(ConvertDepth, DamagedImagesAreNotDecoded) {
   (void)decode<DepthRecord>(damaged);  // an image or nothing, but no crash
 }
 
+TEST(ConvertPrior, ComesBackAsItWas) {
+  const EstimatorPrior sent{.stamp = {7},
+                            .start = EstimatorPrior::Start{{0.1, -0.2, 0.3}, 0.4},
+                            .expected = 3,
+                            .height = 0.123456789012};
+  const EstimatorPrior got = round_trip(sent);
+  EXPECT_EQ(got.stamp, sent.stamp);
+  ASSERT_TRUE(got.start);
+  EXPECT_EQ(got.start->p_WS, sent.start->p_WS);
+  EXPECT_EQ(got.start->yaw, sent.start->yaw);
+  EXPECT_EQ(got.expected, sent.expected);
+  EXPECT_EQ(got.height, sent.height);
+  EXPECT_FALSE(round_trip(EstimatorPrior{}).start);
+}
+
+TEST(Convert, ListsLongerThanTheMessageAreRefusedBeforeTheyAreMade) {
+  constexpr std::size_t kLength = 32;
+  Bytes bytes = encode(samples::plan(), kTag);
+  bytes[kLength] = 0x7F;  // two thousand million knots
+  EXPECT_FALSE(decode<core::JumpPlan>(bytes));
+}
+
 TEST(ConvertQuestion, ComesBackAsItWas) {
   TargetQuestion sent{.stamp = {5}, .rest = samples::state(), .goal_x = 1.9, .goal_heading = 0.3};
   sent.target = core::TargetOverride{.distance = 0.3, .yaw = 0.1};

@@ -78,16 +78,17 @@ TEST_F(RunLog, EveryTypeHasItsOwnChannel) {
   writer.write({}, DepthRecord{.frame = {.intrinsics = {1, 1, 1.0, 1.0, 0.5, 0.5}, .depth = {1.0F}},
                                .at_exposure = samples::state()});
   writer.write({}, AnchorRecord{samples::state()});
+  writer.write({}, EstimatorPrior{});
   writer.write({}, TargetQuestion{.rest = samples::state()});
   writer.close();
 
   int handed_over = 0;
   const auto count = [&](core::Stamp, const auto&) { ++handed_over; };
-  const RunLogHandlers handlers{count, count, count, count, count, count, count, count,
+  const RunLogHandlers handlers{count, count, count, count, count, count, count, count, count,
                                 count, count, count, count, count, count, count, count};
   const RunLogSummary summary = read_run_log(file(), handlers);
-  EXPECT_EQ(handed_over, 16);
-  EXPECT_EQ(summary.events, 16U);
+  EXPECT_EQ(handed_over, 17);
+  EXPECT_EQ(summary.events, 17U);
   EXPECT_EQ(summary.malformed + summary.unknown, 0U);
 }
 

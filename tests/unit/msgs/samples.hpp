@@ -18,7 +18,8 @@ namespace hopscotch::msgs::samples {
 class Source {
  public:
   explicit Source(unsigned seed) : engine_(seed) {}
-  double number() { return std::uniform_real_distribution<double>(-10.0, 10.0)(engine_); }
+  /// A 32-bit number: those survive every channel to the bit.
+  double number() { return std::uniform_real_distribution<float>(-10.0F, 10.0F)(engine_); }
   template <typename Vector>
   void fill(Vector& v) {
     for (Eigen::Index i = 0; i < v.size(); ++i) v.data()[i] = number();
