@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Motion is smooth but for the moments around a change of phase or contact.
+/// Motion is smooth but for the moments around a change of phase or contact. Beside depth frames
+/// it counts for little, and calibration wants it whole.
 constexpr int kTicksPerRecord = 20;
 constexpr int kTicksPerLivelyRecord = 4;
 constexpr int kLivelyTicks = 20;
@@ -199,7 +200,8 @@ bool RunRecorder::motion_due(const TickRecord& tick) {
   phase_ = tick.status.phase;
   contact_ = contact;
   since_change_ = changed ? 0 : since_change_ + 1;
-  const int spacing = since_change_ < kLivelyTicks ? kTicksPerLivelyRecord : kTicksPerRecord;
+  const bool lively = log_depth_ || since_change_ < kLivelyTicks;
+  const int spacing = lively ? kTicksPerLivelyRecord : kTicksPerRecord;
   if (++since_record_ < spacing) return false;
   since_record_ = 0;
   return true;
