@@ -64,10 +64,9 @@ void print_comparison(const nlohmann::ordered_json& rows) {
       }
       return std::string(text);
     };
-    std::printf("%-24s %-12s %10.1f %6d %9s %9s %9s  %s\n",
-                row["jump"].get<std::string>().c_str(), row["model"].get<std::string>().c_str(),
-                row["solve_ms"].get<double>(), row["iterations"].get<int>(),
-                cell("landing_error_m", 100.0, "cm").c_str(),
+    std::printf("%-24s %-12s %10.1f %6d %9s %9s %9s  %s\n", row["jump"].get<std::string>().c_str(),
+                row["model"].get<std::string>().c_str(), row["solve_ms"].get<double>(),
+                row["iterations"].get<int>(), cell("landing_error_m", 100.0, "cm").c_str(),
                 cell("promised_speed_z_mps", 1.0, "m/s").c_str(),
                 cell("flown_speed_z_mps", 1.0, "m/s").c_str(),
                 row["outcome"].get<std::string>().c_str());

@@ -48,6 +48,7 @@ ReachConfig ReachConfig::load(const ConfigReader& section) {
   config.distance_min = column(section, "distance_min_m", size);
   config.distance_max = column(section, "distance_max_m", size);
   config.takeoff_edge_max = column(section, "takeoff_edge_max_m", size);
+  config.past_edge_min = column(section, "past_edge_min_m", size);
   for (std::size_t i = 0; i < size; ++i) {
     if (!(0.0 < config.distance_min[i] && config.distance_min[i] <= config.distance_max[i])) {
       section.reject("distance_min_m", "must be positive and not above distance_max_m");

@@ -33,8 +33,10 @@ struct ReachConfig {
   std::vector<double> distance_min;      ///< [m]
   std::vector<double> distance_max;      ///< [m]
   std::vector<double> takeoff_edge_max;  ///< The takeoff tread must end this near ahead of S [m].
-  double takeoff_edge_reserve = 0.0;     ///< Kept for landings that fall short, thinking ahead [m].
-  double drop_min = 0.0;                 ///< Smaller drops ask nothing of the takeoff edge [m].
+  /// After a drop the soles' mid-point is at least so far beyond the takeoff tread's end [m].
+  std::vector<double> past_edge_min;
+  double takeoff_edge_reserve = 0.0;  ///< Kept for landings that fall short, thinking ahead [m].
+  double drop_min = 0.0;              ///< Smaller drops ask nothing of the takeoff edge [m].
   double hurdle_max = 0.0;   ///< What may stick out above takeoff and landing on the way [m].
   double lateral_max = 0.0;  ///< Sideways, for the operator's targets [m].
   double yaw_max = 0.0;      ///< Turn, for the operator's targets [rad].

@@ -19,7 +19,8 @@ Reach reach_at(const ReachConfig& config, double height) {
   };
   return {.distance_min = between(config.distance_min),
           .distance_max = between(config.distance_max),
-          .takeoff_edge_max = between(config.takeoff_edge_max)};
+          .takeoff_edge_max = between(config.takeoff_edge_max),
+          .past_edge_min = between(config.past_edge_min)};
 }
 
 Reason reach_verdict(const ReachConfig& config, const Leap& leap) {
@@ -29,8 +30,10 @@ Reason reach_verdict(const ReachConfig& config, const Leap& leap) {
   if (!(leap.distance >= reach.distance_min && leap.distance <= reach.distance_max)) {
     return Reason::out_of_reach;
   }
-  const bool drop = leap.height < -config.drop_min;
-  return drop && leap.takeoff_edge > reach.takeoff_edge_max ? Reason::out_of_reach : Reason::none;
+  if (leap.height >= -config.drop_min) return Reason::none;
+  const bool clears = leap.takeoff_edge <= reach.takeoff_edge_max &&
+                      leap.distance - leap.takeoff_edge >= reach.past_edge_min;
+  return clears ? Reason::none : Reason::out_of_reach;
 }
 
 double longest_reach(const ReachConfig& config) {

@@ -10,6 +10,7 @@ struct Reach {
   double distance_min = 0.0;      ///< [m]
   double distance_max = 0.0;      ///< [m]
   double takeoff_edge_max = 0.0;  ///< [m]
+  double past_edge_min = 0.0;     ///< Of a landing after a drop [m].
 };
 
 /// The table at `height` [m], linear between its rows, the end rows beyond them.
@@ -23,7 +24,8 @@ struct Leap {
 };
 
 /// `none` when the robot can do it, otherwise step_too_high, step_too_low or out_of_reach. A drop
-/// from too far behind the edge is out of reach: the knees, bent backward, would hit the edge.
+/// from too far behind the edge is out of reach, and one that ends too near below it: knees and
+/// shanks, which lean back while the landing sinks, would hit the edge.
 [[nodiscard]] core::Reason reach_verdict(const ReachConfig& config, const Leap& leap);
 
 /// Longest distance of the whole table [m].

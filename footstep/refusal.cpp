@@ -133,7 +133,8 @@ Refusal explain_place(const FootstepConfig& config, const JudgedFoothold& judged
       const Reach reach = reach_at(config.reach, place.height);
       return {judged.why, where + ", " + cm(place.height) + " high, it is beyond reach: " +
                               cm(reach.distance_min) + " to " + cm(reach.distance_max) +
-                              ", takeoff edge within " + cm(reach.takeoff_edge_max)};
+                              ", takeoff edge within " + cm(reach.takeoff_edge_max) +
+                              " and passed by " + cm(reach.past_edge_min)};
     }
     case Reason::tread_too_short:
     case Reason::no_safe_target:

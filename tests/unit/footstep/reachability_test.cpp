@@ -15,6 +15,7 @@ ReachConfig table() {
   config.distance_min = {0.30, 0.10, 0.20};
   config.distance_max = {0.40, 0.60, 0.40};
   config.takeoff_edge_max = {0.12, 1.0, 1.0};
+  config.past_edge_min = {0.24, 0.10, 0.10};
   config.drop_min = 0.05;
   return config;
 }
@@ -48,6 +49,13 @@ TEST(Reachability, JumpDownNeedsToesNearTheEdge) {
   const Leap far{.distance = 0.35, .height = -0.25, .takeoff_edge = 0.35};
   EXPECT_EQ(reach_verdict(table(), near), Reason::none);
   EXPECT_EQ(reach_verdict(table(), far), Reason::out_of_reach);
+}
+
+TEST(Reachability, JumpDownEndsClearOfTheEdge) {
+  const Leap clear{.distance = 0.36, .height = -0.30, .takeoff_edge = 0.11};
+  const Leap close{.distance = 0.34, .height = -0.30, .takeoff_edge = 0.11};
+  EXPECT_EQ(reach_verdict(table(), clear), Reason::none);
+  EXPECT_EQ(reach_verdict(table(), close), Reason::out_of_reach);
 }
 
 TEST(Reachability, SmallDropsDoNotCareForTheEdge) {
