@@ -42,7 +42,7 @@ SessionBrain RobotBrain::session_brain() {
 }
 
 core::JointCommand RobotBrain::tick(const core::SensorReadings& readings) {
-  const core::JointCommand command = pipeline_.tick(readings, camera_);
+  core::JointCommand command = pipeline_.tick(readings, camera_);
   if (!ticked_) hold();
   ticked_ = true;
   if (pipeline_.end() == MissionEnd::refused) {

@@ -34,7 +34,7 @@ fs::path make_partial(const fs::path& folder) {
   if (fs::exists(folder) && !fs::is_regular_file(RunFolder{folder}.result())) {
     throw core::ConfigError(folder.string() + ": exists and is no run folder; give another --out");
   }
-  const fs::path partial = folder.string() + ".partial";
+  fs::path partial = folder.string() + ".partial";
   fs::remove_all(partial);
   fs::create_directories(partial);
   return partial;
@@ -215,7 +215,7 @@ void RunRecorder::record_prior(core::Stamp now, const PipelineEvents& events) {
                                .start = std::nullopt,
                                .expected = static_cast<std::uint8_t>(*events.expected),
                                .height = told_height_.value_or(core::kNaN)};
-    if (events.put_down) prior.start.emplace(events.put_down->p_WS, events.put_down->yaw);
+    if (events.put_down) prior.start = {events.put_down->p_WS, events.put_down->yaw};
     write(maker_.make(now, prior));
   }
   expected_ = *events.expected;

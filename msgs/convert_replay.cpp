@@ -81,7 +81,7 @@ std::optional<Tagged<EstimatorPrior>> decode(std::span<const std::uint8_t> bytes
   EstimatorPrior value;
   value.stamp = wire::stamp_of(*message);
   if (message->starts != 0) {
-    value.start.emplace();
+    value.start = EstimatorPrior::Start{};
     wire::get(message->p_WS, value.start->p_WS);
     value.start->yaw = message->yaw;
   }
