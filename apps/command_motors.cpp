@@ -1,10 +1,11 @@
 #include <poll.h>
-#include <time.h>
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -59,7 +60,7 @@ class MotorsProgram {
   /// As long as nobody interrupts: lives a period whenever the robot grants one.
   void follow_the_robot() {
     StepFollower link(config_.pacing.socket);
-    const int period = static_cast<int>(1000.0 / config_.topology.rate + 0.5);
+    const int period = static_cast<int>(std::lround(1000.0 / config_.topology.rate));
     std::printf("motors: waiting for a robot at '%s', time in lock-step with it\n",
                 config_.pacing.socket.c_str());
     std::fflush(stdout);

@@ -12,6 +12,7 @@ namespace {
 
 std::vector<std::string> joint_names() {
   std::vector<std::string> names;
+  names.reserve(core::kJoints);
   for (int joint = 0; joint < core::kJoints; ++joint) names.push_back(hardware::joint_name(joint));
   return names;
 }
@@ -37,6 +38,7 @@ void happen(const ScriptedFault& fault, EmulatedRobot& robot) {
       break;
     case ScriptedFault::Kind::bus_off: bus.force_bus_off(); break;
     case ScriptedFault::Kind::cut_bus: bus.cut(); break;
+    case ScriptedFault::Kind::full_queue: bus.fill_queue(); break;
     case ScriptedFault::Kind::stuck_encoder: defects.encoder_stuck = true; break;
     case ScriptedFault::Kind::imu_loss: robot.switch_imu_off(); break;
   }
@@ -46,9 +48,9 @@ void happen(const ScriptedFault& fault, EmulatedRobot& robot) {
 
 ScriptedFault ScriptedFault::load(const core::ConfigReader& section) {
   ScriptedFault fault;
-  fault.kind = static_cast<Kind>(
-      section.choice("kind", {"lost_replies", "silent", "over_temperature", "swapped_replies",
-                              "wrong_range", "bus_off", "cut_bus", "stuck_encoder", "imu_loss"}));
+  fault.kind = static_cast<Kind>(section.choice(
+      "kind", {"lost_replies", "silent", "over_temperature", "swapped_replies", "wrong_range",
+               "bus_off", "cut_bus", "full_queue", "stuck_encoder", "imu_loss"}));
   fault.moment =
       static_cast<Moment>(section.choice("moment", {"at_time", "in_stance", "in_flight"}));
   fault.after = section.number("after_s", core::Range::not_negative());

@@ -22,6 +22,7 @@ struct ScriptedFault {
     wrong_range,       ///< The drive of `joint` is set to a third of its torque range.
     bus_off,           ///< The host's controller leaves `bus`.
     cut_bus,           ///< Nobody acknowledges on `bus`.
+    full_queue,        ///< The host's interface takes no more frames for `bus`.
     stuck_encoder,     ///< Of `joint`.
     imu_loss,
   };

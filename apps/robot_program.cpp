@@ -133,6 +133,7 @@ ExitStatus RobotProgram::run(const std::atomic<bool>& interrupted) {
   session_.tick();
   session_.tick();
   std::printf("robot: stopped, drives off, after %.3f s\n", now_.seconds());
+  print_counters();
   return ExitStatus::ok;
 }
 
@@ -276,6 +277,19 @@ void RobotProgram::tell_progress() {
     printed_ = now_;
     print_joints();
   }
+}
+
+void RobotProgram::print_counters() const {
+  const hardware::PlantCounters& wire = plant_.counters();
+  const auto number = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
+  std::printf(
+      "robot: %llu exchanges, %llu late; answers: %llu taken, %llu missing, %llu malformed, "
+      "%llu from the wrong drive, %llu implausible; frames not taken %llu, bus errors %llu, "
+      "foreign commands %llu\n",
+      number(wire.exchanges), number(session_.deadlines().late), number(wire.replies),
+      number(wire.lost_replies), number(wire.malformed), number(wire.wrong_sender),
+      number(wire.implausible), number(wire.not_sent), number(wire.bus_errors),
+      number(wire.foreign));
 }
 
 void RobotProgram::print_joints() const {

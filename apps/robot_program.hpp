@@ -68,6 +68,7 @@ class RobotProgram {
   void tell_progress();
   void tell_status();
   void print_joints() const;
+  void print_counters() const;
   [[nodiscard]] std::string fault_text() const;
 
   RobotConfig config_;

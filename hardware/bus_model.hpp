@@ -44,6 +44,8 @@ class BusModel {
   void lose_answers(int count) { answers_to_lose_ += count; }
   /// A cut wire: nobody acknowledges, so the host repeats its first frame for ever.
   void cut() { cut_ = true; }
+  /// The interface takes nothing more, as when its queue is full (ENOBUFS).
+  void fill_queue() { options_.queue = 0; }
   void force_bus_off();
 
   [[nodiscard]] bool bus_off() const { return bus_off_; }

@@ -21,6 +21,21 @@ constexpr int kWrongSenders = 3;  // in a row: no accident
 /// What answers any command and lets nothing move.
 constexpr DriveSetpoint kNoEffort{};
 
+PlantFault bus_fault(std::size_t bus, BusTrouble trouble) noexcept {
+  return {.reason = Reason::bus_fault, .bus = static_cast<int>(bus), .trouble = trouble};
+}
+
+std::string_view trouble_text(BusTrouble trouble) {
+  switch (trouble) {
+    case BusTrouble::none: break;
+    case BusTrouble::off: return " is off the bus";
+    case BusTrouble::passive: return " is error passive";
+    case BusTrouble::not_taken: return " does not take frames: its queue is full, or it is down";
+    case BusTrouble::not_confirmed: return " does not confirm that frames have been sent";
+  }
+  return " is in trouble";
+}
+
 }  // namespace
 
 RobotPlantConfig RobotPlantConfig::load(const core::ConfigReader& section) {
@@ -57,7 +72,7 @@ std::string describe(const PlantFault& fault, const BusTopology& topology) {
   }
   if (fault.bus >= 0) {
     return topology.buses[static_cast<std::size_t>(fault.bus)].interface_name +
-           " is off the bus, error passive, or does not take or confirm frames";
+           std::string(trouble_text(fault.trouble));
   }
   if (fault.reason == Reason::imu_lost) return "the IMU is silent";
   return std::string(core::reason_code(fault.reason));
@@ -81,6 +96,7 @@ RobotPlant::RobotPlant(const RobotPlantConfig& config, const BusTopology& topolo
 
 core::SensorReadings RobotPlant::exchange(const core::JointCommand& command) {
   const core::Stamp begun = now_;
+  const bool clock_ran = clock_runs_;
   write_commands(command);
   now_ = ports_.wait();
   read_buses();
@@ -88,7 +104,7 @@ core::SensorReadings RobotPlant::exchange(const core::JointCommand& command) {
   close_exchange();
   find_faults();
   ++counters_.exchanges;
-  return readings(clock_runs_ ? begun : now_);
+  return readings(clock_ran ? begun : now_);
 }
 
 void RobotPlant::write_commands(const core::JointCommand& command) {
@@ -116,9 +132,7 @@ void RobotPlant::write_commands(const core::JointCommand& command) {
     const std::size_t taken = ports_.buses[bus].send({outbox.frames.data(), outbox.count});
     outbox.unconfirmed += taken;
     counters_.not_sent += outbox.count - taken;
-    if (taken < outbox.count) {
-      latch({.reason = Reason::bus_fault, .bus = static_cast<int>(bus)});
-    }
+    if (taken < outbox.count) latch(bus_fault(bus, BusTrouble::not_taken));
   }
 }
 
@@ -167,9 +181,8 @@ void RobotPlant::read_event(std::size_t bus, const CanEvent& event) {
       return;
     case CanEvent::Kind::error:
       ++counters_.bus_errors;
-      if (event.errors.bus_off || event.errors.passive) {
-        latch({.reason = Reason::bus_fault, .bus = static_cast<int>(bus)});
-      }
+      if (event.errors.bus_off) latch(bus_fault(bus, BusTrouble::off));
+      if (event.errors.passive) latch(bus_fault(bus, BusTrouble::passive));
       return;
     case CanEvent::Kind::received: break;
   }
@@ -303,7 +316,7 @@ void RobotPlant::find_faults() {
   for (std::size_t bus = 0; bus < ports_.buses.size(); ++bus) {
     // The last exchange's frames may still be on their way, those before may not.
     if (outboxes_[bus].unconfirmed > outboxes_[bus].count) {
-      latch({.reason = Reason::bus_fault, .bus = static_cast<int>(bus)});
+      latch(bus_fault(bus, BusTrouble::not_confirmed));
     }
   }
   if (!imu_ || now_.since(imu_stamp_) > config_.imu_age_max) latch({.reason = Reason::imu_lost});

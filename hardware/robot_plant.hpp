@@ -42,12 +42,22 @@ struct PlantPorts {
   std::function<core::Stamp()> wait;
 };
 
+/// What is wrong with a bus.
+enum class BusTrouble : std::uint8_t {
+  none,
+  off,            ///< Its controller has left the bus.
+  passive,        ///< So many errors that its controller may no longer report them.
+  not_taken,      ///< The interface refused a frame: its queue is full, or it is down.
+  not_confirmed,  ///< Frames of earlier exchanges are not on the wire yet.
+};
+
 /// The first thing that went wrong.
 struct PlantFault {
   core::Reason reason = core::Reason::none;
   int joint = -1;  ///< -1: no joint in particular.
   int bus = -1;    ///< -1: no bus in particular.
   DriveFault drive = DriveFault::none;
+  BusTrouble trouble = BusTrouble::none;
 };
 /// e.g. "left_knee on can1 reports over-temperature".
 [[nodiscard]] std::string describe(const PlantFault& fault, const BusTopology& topology);
