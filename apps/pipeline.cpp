@@ -150,6 +150,7 @@ void Pipeline::start(const core::RobotState& state) {
   events_.anchor = state;
   map_ = std::make_shared<const core::TerrainMap>(mapper_.map());
   landed_ = state.stamp;
+  last_seen_ = state.stamp;
   still_since_ = state.stamp;
   last_mpc_ = state.stamp.after(-config_.runtime.mpc_period);
 }
@@ -161,6 +162,7 @@ void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
     map_ = std::move(sight->map);
     const bool fused = sight->status == perception::MapStatus::fused;
     if (fused && sight->exposed > landed_) ++frames_since_landing_;
+    if (fused) last_seen_ = std::max(last_seen_, sight->exposed);
   }
   // A robot that was dropped had its soles in the air when the map was tied to them.
   const bool fallen = !height_checked_ && jumps_done_ == 0;
@@ -187,7 +189,11 @@ void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
 /// Where to, and how: the next jump is chosen and planned while the present one lands.
 void Pipeline::decide(const core::RobotState& state) {
   if (Decision* const decision = decision_.take(state.stamp)) receive_plan(*decision->plan);
-  if (may_decide(state)) ask_where(state);
+  if (is_idle(state) && is_blind(state.stamp)) {
+    refuse(state.stamp, {core::Reason::terrain_unseen, "no usable depth frame comes any more"});
+  } else if (may_decide(state)) {
+    ask_where(state);
+  }
   if (const Decision* const decision = decision_.made()) weigh(state.stamp, *decision);
 }
 
@@ -206,14 +212,23 @@ void Pipeline::balance(core::Stamp now) {
   if (balance_.made() != nullptr) events_.mpc_ms = balance_.work_ms();
 }
 
-bool Pipeline::may_decide(const core::RobotState& state) const {
+/// The next jump is wanted and nothing is known of it.
+bool Pipeline::is_idle(const core::RobotState& state) const {
   if (end_ || control_->has_next() || !decision_.vacant()) return false;
   if (held() && !desk_.due()) return false;
   const RobotPhase phase = control_->phase();
   if (!core::is_standing(phase) && phase != RobotPhase::landing) return false;
+  return state.stamp.since(landed_) >= config_.runtime.look_time && !mission_accomplished(state);
+}
+
+bool Pipeline::may_decide(const core::RobotState& state) const {
   const bool looked = oracle_ || frames_since_landing_ >= config_.runtime.look_frames;
-  return looked && state.stamp.since(landed_) >= config_.runtime.look_time &&
-         !mission_accomplished(state);
+  return looked && is_idle(state);
+}
+
+/// What the map says may no longer be so.
+bool Pipeline::is_blind(core::Stamp now) const {
+  return !oracle_ && now.since(last_seen_) > config_.runtime.sight_age_max;
 }
 
 void Pipeline::ask_where(const core::RobotState& state) {
@@ -338,6 +353,7 @@ void Pipeline::watch_mission(const core::RobotState& state) {
   const core::ControlStatus& status = control_->status();
   if (control_->phase_changed() && status.phase == RobotPhase::landing) {
     landed_ = state.stamp;
+    last_seen_ = state.stamp;
     frames_since_landing_ = 0;
     const bool jumped = status.plan_id != 0;  // and did not fall
     height_checked_ = !jumped && jumps_done_ > 0;

@@ -172,7 +172,9 @@ class Pipeline {
   void ask_where(const core::RobotState& state);
   void make_decision(const DecisionQuestion& question, Decision& decision);
   void weigh(core::Stamp now, const Decision& decision);
+  [[nodiscard]] bool is_idle(const core::RobotState& state) const;
   [[nodiscard]] bool may_decide(const core::RobotState& state) const;
+  [[nodiscard]] bool is_blind(core::Stamp now) const;
   [[nodiscard]] bool mission_accomplished(const core::RobotState& state) const;
   void refuse(core::Stamp now, const core::Refusal& refusal);
   void apply_target(const core::OperatorCommand& command);
@@ -213,6 +215,7 @@ class Pipeline {
   core::TargetChoice choice_;  ///< The target being planned, with the ranked places it was among.
   std::vector<double> failed_distances_;  ///< Of places that could not be planned from here [m].
   core::RobotPhase last_phase_ = core::RobotPhase::stand;
+  core::Stamp last_seen_;  // exposure of the newest frame in the map, or the touchdown after it
   int frames_since_landing_ = 0;
   int jumps_done_ = 0;
   std::uint64_t plans_made_ = 0;

@@ -14,6 +14,7 @@ RuntimeConfig RuntimeConfig::load(const core::ConfigReader& section) {
   config.mpc_period = 1e-3 * section.number("mpc_period_ms", Range::closed(1.0, 50.0));
   config.look_time = section.number("look_time_s", Range::closed(0.0, 5.0));
   config.look_frames = section.integer("look_frames", 1, 100);
+  config.sight_age_max = section.number("sight_age_max_s", Range::above(0.0, 10.0));
   config.patience = section.number("patience_s", Range::closed(0.0, 30.0));
   config.settle_time = section.number("settle_time_s", Range::closed(0.0, 10.0));
   config.settle_speed = section.number("settle_speed_mps", Range::positive());

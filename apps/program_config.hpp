@@ -19,6 +19,7 @@ struct RuntimeConfig {
   double mpc_latency = 0.0;         ///< State to wrenches [s].
   double mpc_period = 0.0;          ///< [s]
   double look_time = 0.0;           ///< After touchdown, before the next target is chosen [s].
+  double sight_age_max = 0.0;       ///< Without a usable depth frame for so long: no target [s].
   int look_frames = 0;              ///< Depth frames that must have come in since then.
   double patience = 0.0;            ///< Looking without a safe target before giving up [s].
   double settle_time = 0.0;         ///< Standing still for so long counts as rest [s].

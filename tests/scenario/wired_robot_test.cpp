@@ -134,6 +134,28 @@ TEST(WiredRobot, HoldsBeforeAPitAndSaysWhy) {
   EXPECT_TRUE(robot.brain.pipeline().held());
 }
 
+TEST(WiredRobot, HoldsWhenItsEyesGoDark) {
+  SeeingRobot seeing(
+      config_on("name: level\n"
+                "camera: {width: 320, height: 240}\n"
+                "slabs:\n"
+                "  - {x_m: [-1.0, 3.0]}\n"
+                "plant: {latency_ms: 0}\n"
+                "goal: {jumps: 1}\n"));
+  WiredRobot& robot = seeing.robot;
+  ASSERT_TRUE(robot.stand());
+  robot.each_tick = nullptr;  // no frame is exposed any more
+  robot.run(2.0);
+  robot.ask(core::ModeRequest::jump);
+  robot.run(4.0);
+  EXPECT_EQ(robot.brain.jumps(), 0);
+  const std::optional<core::Refusal> refusal = robot.brain.take_refusal();
+  ASSERT_TRUE(refusal.has_value());
+  EXPECT_EQ(refusal->reason, Reason::terrain_unseen) << refusal->sentence;
+  EXPECT_EQ(robot.session.stage(), SessionStage::active);
+  EXPECT_FALSE(robot.fallen);
+}
+
 constexpr int kLeftKnee = 3;
 constexpr std::size_t kKneeBus = 1;
 
@@ -230,13 +252,12 @@ TEST_F(WiredFault, SwappedReplyIdentifiersAreFoundBeforeAnyTorque) {
 }
 
 TEST_F(WiredFault, WrongHomePoseIsRefused) {
+  WiredRobot robot(config_);
   config_.homing.pose(3) = -1.2;  // the jig says otherwise
-  WiredRobot robot(testing::wired_config());
-  hardware::HomingConfig wrong = config_.homing;
-  robot.session.tick();
-  robot.session.tick();
-  EXPECT_NE(hardware::homing_problem(wrong, config_.robot, robot.session.readings().q), "");
-  EXPECT_EQ(robot.session.obstacle(), "");
+  RobotSession session(config_, robot.plant, landing_posture(config_));
+  session.tick();
+  session.tick();
+  EXPECT_NE(session.obstacle().find("left_knee"), std::string::npos) << session.obstacle();
 }
 
 TEST_F(WiredFault, BusOffOnOneBusEndsInASoftStopOnTheOthers) {
@@ -260,6 +281,17 @@ TEST_F(WiredFault, CutBusIsNoticedWithinThreeExchanges) {
   EXPECT_TRUE(
       robot_->run_until([&] { return robot_->session.stage() == SessionStage::stopping; }, 0.003));
   EXPECT_EQ(robot_->session.fault().reason, Reason::bus_fault);
+}
+
+TEST_F(WiredFault, FullQueueEndsInASoftStopBeforeTorquesGetStale) {
+  stand();
+  robot_->world.bus(kKneeBus).fill_queue();
+  EXPECT_TRUE(
+      robot_->run_until([&] { return robot_->session.stage() == SessionStage::stopping; }, 0.002));
+  EXPECT_EQ(robot_->session.fault().reason, Reason::bus_fault);
+  EXPECT_EQ(robot_->session.fault().plant.trouble, hardware::BusTrouble::not_taken);
+  robot_->run(5.0);
+  EXPECT_FALSE(any_drive_on(*robot_));
 }
 
 TEST_F(WiredFault, StuckEncoderOfAMovingJointEndsInASoftStop) {
