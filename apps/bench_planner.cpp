@@ -1,17 +1,14 @@
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 #include <vector>
 
 #include "apps/bench.hpp"
-#include "apps/installation.hpp"
+#include "apps/bench_targets.hpp"
 #include "apps/run_result.hpp"
+#include "apps/shipped_jumps.hpp"
 #include "apps/stopwatch.hpp"
-#include "core/config_reader.hpp"
 #include "planner/chain_solver.hpp"
 #include "planner/jump_planner.hpp"
 #include "planner/planar_task.hpp"
-#include "planner/step_target.hpp"
 #include "planner/warm_start.hpp"
 
 namespace hopscotch::apps {
@@ -28,49 +25,6 @@ namespace {
 constexpr std::size_t kIpoptEvery = 5;
 /// A warm start comes from the plan to the same place moved by so much [m].
 constexpr double kMoved = 0.02;
-
-struct BenchTarget {
-  double distance = 0.0;
-  double height = 0.0;
-  planner::StartKind start = planner::StartKind::stand;
-};
-
-/// The published set of reachable targets; `planner_grid` made it.
-std::vector<BenchTarget> read_targets() {
-  const std::filesystem::path path = config_directory() / "bench" / "planner_targets.csv";
-  std::ifstream file(path);
-  if (!file) throw core::ConfigError(path.string() + ": cannot be read");
-  std::vector<BenchTarget> targets;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    if (number == 1) continue;  // names of the columns
-    std::istringstream fields(line);
-    BenchTarget target;
-    char comma = ' ';
-    std::string start;
-    fields >> target.distance >> comma >> target.height >> comma >> start;
-    const std::optional<planner::StartKind> kind = planner::start_kind_from(start);
-    if (!fields || !kind) {
-      throw core::ConfigError(path.string() + ":" + std::to_string(number) +
-                              ": must be distance,height,start");
-    }
-    target.start = *kind;
-    targets.push_back(target);
-  }
-  return targets;
-}
-
-planner::PlanRequest request_for(const BenchSetup& setup, const BenchTarget& target) {
-  const model::StandPosture& posture = setup.config.stand_posture;
-  const std::optional<core::RobotState> start =
-      planner::start_state(target.start, setup.robot, posture);
-  if (!start) throw core::ConfigError("model.stand_posture cannot be taken");
-  const planner::StepRequest step{.distance = target.distance,
-                                  .height = target.height,
-                                  .edge = planner::default_edge(target.distance, target.height)};
-  return {
-      .start = *start, .target = planner::step_target(step, setup.robot), .final_posture = posture};
-}
 
 struct PlannerSamples {
   std::vector<double> plan_ms;
@@ -143,7 +97,8 @@ struct IterationSamples {
 }  // namespace
 
 nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
-  planner::JumpPlanner planner(setup.config.planner, setup.robot);
+  planner::JumpPlanner planner(setup.config.planner, setup.robot,
+                               shipped_jumps(setup.robot.name, setup.config.planner.steps));
   PlannerSamples cold;
   PlannerSamples warm;
   PlannerSamples ipopt;

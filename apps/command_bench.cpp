@@ -16,6 +16,7 @@ struct BenchOptions {
   std::string what;
   std::filesystem::path qps;
   int jumps = 20;
+  int fly = 0;
   bool compare = false;
   bool json = false;
 };
@@ -43,6 +44,7 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
   const BenchSetup setup{ProgramConfig::load(config_directory() / "hopscotch.yaml"),
                          model::RobotParameters::load(robot_file("hector"))};
   if (options.what == "planner") {
+    if (options.fly > 0) return bench_flights(setup, options.fly);
     return options.compare ? bench_formulations(setup) : bench_planner(setup);
   }
   if (options.what == "mpc") return bench_mpc(setup, options.qps);
@@ -103,6 +105,8 @@ void add_bench_command(CLI::App& app, Action& action) {
   command->add_option("--jumps", options->jumps, "estimator: so many jumps")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  command->add_option("--fly", options->fly, "planner: plan and fly so many of its targets")
+      ->check(CLI::Range(1, 1000));
   command->add_flag("--compare", options->compare,
                     "planner: against other formulations of the same jumps, flown in MuJoCo");
   command->add_flag("--json", options->json, "Print one JSON object");
@@ -110,6 +114,9 @@ void add_bench_command(CLI::App& app, Action& action) {
     action = [options] {
       if (options->compare && options->what != "planner") {
         throw core::ConfigError("bench: --compare is an option of planner");
+      }
+      if (options->fly > 0 && options->what != "planner") {
+        throw core::ConfigError("bench: --fly is an option of planner");
       }
       nlohmann::ordered_json json;
       json["schema"] = "hopscotch.bench/1";

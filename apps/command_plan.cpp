@@ -11,6 +11,7 @@
 #include "apps/installation.hpp"
 #include "apps/plan_json.hpp"
 #include "apps/program_config.hpp"
+#include "apps/shipped_jumps.hpp"
 #include "apps/stopwatch.hpp"
 #include "apps/text_file.hpp"
 #include "core/config_reader.hpp"
@@ -41,6 +42,9 @@ void say_plan(const core::JumpPlan& plan, const PlanContext& context) {
               plan.target.distance, plan.target.height,
               std::string(core::plan_status_name(plan.status)).c_str(), plan.iterations,
               context.solve_ms.p50, context.solves);
+  if (context.rung != planner::plan_rung_name(planner::PlanRung::solved)) {
+    std::printf("by the rung `%s` of the ladder\n", std::string(context.rung).c_str());
+  }
   std::printf("takeoff %.2f s, flight %.2f s, landing %.2f s; normal force up to %.0f N\n",
               plan.liftoff_time, plan.touchdown_time - plan.liftoff_time,
               plan.duration - plan.touchdown_time, plan.peaks.normal_force);
@@ -97,9 +101,9 @@ struct PlanSession {
   PlanSession(const PlanOptions& options, const ProgramConfig& tuning)
       : config(tuning),
         robot(model::RobotParameters::load(robot_file(options.robot))),
-        planner(config.planner, robot),
+        planner(config.planner, robot, shipped_jumps(robot.name, config.planner.steps)),
         request(request_of(options, config, robot)),
-        context{options.model, options.solver, {}, options.repeat, {}} {}
+        context{options.model, options.solver, {}, {}, options.repeat, {}} {}
 
   core::Result<core::JumpPlan> solve() {
     std::vector<double> solve_ms;
@@ -110,6 +114,7 @@ struct PlanSession {
       solve_ms.push_back(watch.milliseconds());
     }
     context.solve_ms = Percentiles::of(solve_ms);
+    context.rung = planner::plan_rung_name(planner.rung());
     return std::move(*result);
   }
 };

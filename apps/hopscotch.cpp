@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "apps/command_campaign.hpp"
+#include "apps/command_library.hpp"
 #include "apps/commands.hpp"
 #include "apps/installation.hpp"
 #include "core/config_reader.hpp"
@@ -18,6 +19,7 @@ int main(int argc, char** argv) {
   Action action;
   hopscotch::apps::add_run_command(app, action);
   hopscotch::apps::add_plan_command(app, action);
+  hopscotch::apps::add_library_command(app, action);
   hopscotch::apps::add_target_command(app, action);
   hopscotch::apps::add_command_command(app, action);
   hopscotch::apps::add_campaign_command(app, action);

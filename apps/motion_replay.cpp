@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "apps/shipped_jumps.hpp"
 #include "msgs/convert.hpp"
 
 namespace hopscotch::apps {
@@ -16,7 +17,9 @@ bool equal(const Value& a, const Value& b) {
 }  // namespace
 
 MotionReplay::MotionReplay(const ProgramConfig& config, const model::RobotParameters& robot)
-    : config_(config), robot_(robot), planner_(config.planner, robot) {}
+    : config_(config),
+      robot_(robot),
+      planner_(config.planner, robot, shipped_jumps(robot.name, config.planner.steps)) {}
 
 void MotionReplay::prior(const msgs::EstimatorPrior& prior) {
   if (prior.start) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/shipped_jumps.hpp"
 #include "apps/stopwatch.hpp"
 #include "core/allocation_count.hpp"
 #include "core/check.hpp"
@@ -51,7 +52,7 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
       mapper_(config.perception, robot),
       doubt_(config.footstep.doubt),
       selector_(config.footstep, robot),
-      planner_(config.planner, robot),
+      planner_(config.planner, robot, shipped_jumps(robot.name, config.planner.steps)),
       mpc_(config.control.wrench_mpc, robot),
       sight_({.name = "perception",
               .latency = config.runtime.perception_latency,

@@ -81,6 +81,7 @@ Json summary(const core::JumpPlan& plan, const PlanContext& context) {
   json["height_m"] = plan.target.height;
   json["lateral_m"] = side.lateral;
   json["yaw_rad"] = side.yaw;
+  json["rung"] = context.rung;
   json["iterations"] = plan.iterations;
   json["duration_s"] = plan.duration;
   json["flight_s"] = plan.touchdown_time - plan.liftoff_time;

@@ -16,6 +16,7 @@ namespace hopscotch::apps {
 struct PlanContext {
   std::string_view model;
   std::string_view solver;
+  std::string_view rung;  ///< Of the planner's ladder.
   Percentiles solve_ms;
   int solves = 0;
   std::optional<FlownJump> flown;  ///< Where the plan was flown.

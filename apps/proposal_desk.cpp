@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "apps/shipped_jumps.hpp"
 #include "apps/stopwatch.hpp"
 
 namespace hopscotch::apps {
@@ -73,7 +74,9 @@ Json plan_of(const core::JumpPlan& plan) {
 }  // namespace
 
 ProposalDesk::ProposalDesk(const ProgramConfig& config, const model::RobotParameters& robot)
-    : config_(config), selector_(config.footstep, robot), planner_(config.planner, robot) {}
+    : config_(config),
+      selector_(config.footstep, robot),
+      planner_(config.planner, robot, shipped_jumps(robot.name, config.planner.steps)) {}
 
 void ProposalDesk::serve(const LockstepRun& run) {
   const std::lock_guard lock(mutex_);

@@ -15,10 +15,12 @@ using model::LinkArray;
 
 /// Kept from a physical limit, in row units: what lies between the places that are looked at, and a
 /// light foot, whose friction is a small number of newtons.
-constexpr double kMargin = 1e-2;
-constexpr double kTerrainScale = 0.1;       // of clearances among defects [m]
-constexpr double kTerrainMargin = 1e-3;     // kept from the terrain [m]
+constexpr double kMargin = 5e-3;
+constexpr double kTerrainScale = 0.1;   // of clearances among defects [m]
+constexpr double kSoleMargin = 1e-3;    // kept from the terrain [m]
+constexpr double kKneeMargin = 2.5e-3;  // the same; knees swing past edges between two looks [m]
 constexpr double kContactAllowance = 2e-3;  // sole and terrain touch [m]
+constexpr int kKneeRow = 2;                 // among clearance rows, after toe and heel
 /// Longest step of the integration; its error is far below what is looked for [s].
 constexpr double kStepMax = 4e-3;
 constexpr double kRateScale = 21.0;  // of the errors of rates [rad/s]
@@ -85,8 +87,8 @@ class StepLimits {
     const model::PlanarDynamics& dynamics = model_.dynamics;
     excess.terrain[0] = std::max(excess.terrain[0], depth(dynamics.toe(a)) - kContactAllowance);
     excess.terrain[1] = std::max(excess.terrain[1], depth(dynamics.heel(a)) - kContactAllowance);
-    excess.terrain[2] =
-        std::max(excess.terrain[2], depth(dynamics.knee(a)) + model_.robot.shank_radius);
+    excess.terrain[kKneeRow] =
+        std::max(excess.terrain[kKneeRow], depth(dynamics.knee(a)) + model_.robot.shank_radius);
   }
 
   const PlanarModel& model_;
@@ -186,7 +188,8 @@ double bound_clearance(const Excess& excess, const ChainLayout& layout, int k,
       if (step < 0 || step + 1 >= layout.steps().flight) continue;
       const int row = layout.clearance(step) + r;
       correction.lower(row) =
-          std::max(correction.lower(row), values(row) + missing + kTerrainMargin);
+          std::max(correction.lower(row),
+                   values(row) + missing + (r == kKneeRow ? kKneeMargin : kSoleMargin));
     }
   }
   return worst;

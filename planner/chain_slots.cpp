@@ -66,6 +66,11 @@ void ChainSlots::restart(const Eigen::VectorXd& values, double push, double barr
   update_weights();
 }
 
+void ChainSlots::recall(const Eigen::VectorXd& multiplier) {
+  at_lower_ = (-multiplier).cwiseMax(0.0);
+  at_upper_ = multiplier.cwiseMax(0.0);
+}
+
 void ChainSlots::update_weights() {
   for (Eigen::Index i = 0; i < slack_.size(); ++i) {
     multiplier_(i) = at_upper_(i) - at_lower_(i);

@@ -25,6 +25,10 @@ class ChainSlots {
   /// The same, but keeping multipliers where they fit: each product within `spread` of `barrier`.
   void restart(const Eigen::VectorXd& values, double push, double barrier, double spread);
 
+  /// Takes multipliers of a former solution, as `multiplier()` gave them; `restart` goes on from
+  /// them.
+  void recall(const Eigen::VectorXd& multiplier);
+
   [[nodiscard]] const Eigen::VectorXd& slack() const { return slack_; }
   /// Upper minus lower multiplier: the factor of each slot in the Lagrangian.
   [[nodiscard]] const Eigen::VectorXd& multiplier() const { return multiplier_; }

@@ -102,7 +102,11 @@ ChainOutcome ChainSolver::restart(const ChainProblem& problem, const SolveOption
   return iterate(problem, options);
 }
 
-ChainOutcome ChainSolver::solve_again(const ChainProblem& problem, const SolveOptions& options) {
+ChainOutcome ChainSolver::solve_near(const ChainProblem& problem, const ChainSolution& solution,
+                                     const SolveOptions& options) {
+  point_.head(layout_.variables()) = solution.x;
+  slots_.recall(solution.slot_multipliers);
+  equality_dual_ = solution.equality_multipliers;
   return restart(problem, options, {.push = 1e-2, .barrier = 1e-3, .spread = 1e3});
 }
 

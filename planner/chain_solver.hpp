@@ -18,6 +18,13 @@ struct ChainOutcome {
   double stationarity = 0.0;  ///< Scaled gradient of the Lagrangian that is left.
 };
 
+/// Point and multipliers of a solved jump: what another solve close by may start from.
+struct ChainSolution {
+  Eigen::VectorXd x;                 ///< Decision vector.
+  Eigen::VectorXd slot_multipliers;  ///< In the order of ChainLayout, as the next.
+  Eigen::VectorXd equality_multipliers;
+};
+
 /// Primal-dual interior-point method for one jump: Newton steps by `ChainKkt`, inertia correction,
 /// filter line search with second-order correction. Stops on iterations, never on time: equal
 /// inputs give equal outputs. Sized once; a solve does not allocate. The algorithm follows Waechter
@@ -30,13 +37,18 @@ class ChainSolver {
   /// slacks further from their bounds; `iterations` counts both.
   ChainOutcome solve(const ChainProblem& problem, const Eigen::VectorXd& start,
                      const SolveOptions& options);
-  /// From the point and multipliers of the last solve, which may have been for another target.
-  ChainOutcome solve_again(const ChainProblem& problem, const SolveOptions& options);
-  /// The same where the problem has hardly changed since.
+  /// From a solution, which may be of another target.
+  ChainOutcome solve_near(const ChainProblem& problem, const ChainSolution& solution,
+                          const SolveOptions& options);
+  /// From the end of the last solve, where the problem has hardly changed since.
   ChainOutcome polish(const ChainProblem& problem, const SolveOptions& options);
 
   /// Decision vector of the last solve.
   [[nodiscard]] auto x() const { return point_.head(layout_.variables()); }
+  /// How the last solve ended, to start another from.
+  [[nodiscard]] ChainSolution solution() const {
+    return {x(), slots_.multiplier(), equality_dual_};
+  }
   /// Values of the slots at x().
   [[nodiscard]] const Eigen::VectorXd& slot_values() const { return values_; }
   /// Multipliers of the last solve, in the order of ChainLayout.

@@ -13,14 +13,6 @@ struct StartPoint {
   Eigen::VectorXd x;
 };
 
-struct SolveOutcome {
-  SolveStatus status = SolveStatus::failed;
-  int iterations = 0;
-  double violation = 0.0;  ///< Largest breach of rows and bounds.
-  double cost = 0.0;
-  Eigen::VectorXd x;
-};
-
 /// Solves the program with Ipopt (interior point, exact derivatives, MUMPS). Stops on iterations,
 /// never on time, so equal inputs give equal outputs. Writes nothing to the terminal.
 /// @param sizes typical size of each variable; the solver works on x / sizes.

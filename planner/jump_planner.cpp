@@ -1,20 +1,20 @@
 #include "planner/jump_planner.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "planner/certificate.hpp"
-#include "planner/chain_correction.hpp"
-#include "planner/chain_solver.hpp"
+#include "planner/corrected_solver.hpp"
 #include "planner/ipopt_problem.hpp"
+#include "planner/jump_library.hpp"
 #include "planner/landing_phase.hpp"
 #include "planner/leg_certificate.hpp"
 #include "planner/lift_to_3d.hpp"
 #include "planner/planar_task.hpp"
-#include "planner/slot_names.hpp"
 #include "planner/warm_start.hpp"
 
 namespace hopscotch::planner {
@@ -24,9 +24,6 @@ namespace {
 using core::Reason;
 using core::Refusal;
 
-/// Rows and bounds may be missed by so much (shares of limits, metres, radians) before a solution
-/// counts as none; the certificate then judges with the true limits.
-constexpr double kViolationMax = 5e-3;
 /// A margin below zero by less is rounding of the solver.
 constexpr double kMarginTolerance = 1e-3;
 /// Joint motion re-integrated with the held torques may miss by so much, see `certify`.
@@ -34,18 +31,23 @@ constexpr double kDenseViolationMax = 1e-3;
 /// The same of a solution of Ipopt, which nothing corrects between its knots.
 constexpr double kUncorrectedViolationMax = 0.10;
 
-/// A warm start that takes longer was a bad one: from the closed-form guess instead.
-constexpr int kWarmIterationsMax = 25;
+// A jump of the library as it is. The terrain's smoothness allows as much in height.
+constexpr double kShiftMax = 0.03;         // of the landing, forward or back [m]
+constexpr double kHeightMismatch = 0.010;  // [m]
+constexpr double kStartPitch = 0.04;       // of each link [rad]
+constexpr double kStartRate = 0.30;        // [rad/s]
 
-// Deferred correction of a solution.
-constexpr int kPolishIterations = 50;     // in all
-constexpr int kPolishIterationsMax = 25;  // of one pass
-constexpr double kPolishViolationMax = 1e-3;
-/// A pass that leaves more has no solution nearby.
-constexpr double kPolishHopeless = 1e-2;
-/// Dynamics between the knots and limits beyond it are good: an aim that leaves room below the
-/// tolerance of the certificate.
-constexpr double kDefectWanted = 7e-4;
+/// Jumps of the library that a solve is started from before it is given up.
+constexpr std::size_t kNeighbours = 2;
+
+/// First landing step as a share of the mean one where the shipped rhythm, short steps first, gives
+/// no certified plan: the last steps are then shorter, and less happens between their knots.
+constexpr double kEvenFirstShare = 0.8;
+
+PlannerConfig with_even_landing(PlannerConfig config) {
+  config.landing_first_share = std::max(config.landing_first_share, kEvenFirstShare);
+  return config;
+}
 
 /// A jump to the side or with a turn loads one leg more, slides it sideways and reaches further
 /// with it: it uses so much less of each reserve, and the certificate judges each leg.
@@ -58,12 +60,6 @@ PlannerConfig with_room_for_one_leg(PlannerConfig config) {
   }
   return config;
 }
-
-/// A solution and its motion.
-struct SolvedMotion {
-  SolveOutcome outcome;
-  PlanarMotion motion;
-};
 
 NonlinearProgram build_program(const PlanarModel& model, const PlanarTask& task,
                                const DecisionLayout& layout) {
@@ -136,119 +132,182 @@ core::JumpPlan plan_for(const PlanRequest& request, const SolveOutcome& outcome)
   return plan;
 }
 
-bool acceptable(const SolveOutcome& outcome) {
-  return (outcome.status == SolveStatus::solved ||
-          outcome.status == SolveStatus::iteration_limit) &&
-         outcome.violation <= kViolationMax;
+/// Of a rung below the first; what is reported is the refusal of the first.
+Refusal no_plan() {
+  return {Reason::plan_infeasible, "nothing at hand leads there"};
+}
+
+/// One request, projected.
+struct Trial {
+  const PlanarModel& model;
+  const PlanarTask& task;
+  const PlanRequest& request;
+};
+
+/// May the motion of a library's jump be flown as it is?
+bool is_at_hand(const KnownJump& jump, const PlanarTask& task, double shift_max) {
+  for (std::size_t j = 0; j < model::kPlanarLinks; ++j) {
+    if (std::abs(jump.start.pitch[j] - task.start.pitch[j]) > kStartPitch ||
+        std::abs(jump.start.rate[j] - task.start.rate[j]) > kStartRate) {
+      return false;
+    }
+  }
+  return std::abs(jump.height - task.height) <= kHeightMismatch &&
+         std::abs(jump.distance - task.distance) <= shift_max;
+}
+
+/// The request with its landing moved along the jump line.
+PlanRequest moved_to(PlanRequest request, double distance) {
+  core::LandingTarget& target = request.target;
+  const Eigen::Vector3d ahead(std::cos(target.heading), std::sin(target.heading), 0.0);
+  for (Eigen::Isometry3d& X_WF : target.X_WF) {
+    X_WF.pretranslate((distance - target.distance) * ahead);
+  }
+  target.distance = distance;
+  return request;
 }
 
 }  // namespace
 
 struct JumpPlanner::Memory {
   PlanarModel straight;  ///< For jumps ahead.
+  PlanarModel even;      ///< The same with nearly equal landing steps.
   PlanarModel sideways;  ///< For the others: what one leg may use more than the other is kept.
   DecisionLayout layout;
-  ChainSolver chain;
-  ChainCorrection correction;    ///< Of the last solve.
-  bool chain_is_solved = false;  ///< The chain solver holds a certified jump with its multipliers.
-  Eigen::VectorXd previous;      ///< The last certified jump; empty before the first.
-  std::string_view obstacle;     ///< Limit that the last refusal is about.
-  int iterations = 0;            ///< Of the last solve.
+  CorrectedSolver chain;
+  std::shared_ptr<const JumpLibrary> library;
+  std::optional<KnownJump> last;  ///< Solved by `chain` and certified.
+  Eigen::VectorXd last_by_ipopt;  ///< The same by Ipopt; empty before the first.
+  std::string_view obstacle;      ///< Limit that the last refusal is about.
+  int iterations = 0;             ///< Of the last plan, all rungs.
+  PlanRung rung = PlanRung::solved;
 
-  Memory(const model::RobotParameters& robot, const PlannerConfig& config)
+  Memory(const model::RobotParameters& robot, const PlannerConfig& config,
+         std::shared_ptr<const JumpLibrary> jumps)
       : straight(robot, config),
+        even(robot, with_even_landing(config)),
         sideways(robot, with_room_for_one_leg(config)),
         layout(config.steps),
         chain(layout),
-        correction(ChainLayout(layout)) {}
+        library(jumps ? std::move(jumps) : std::make_shared<const JumpLibrary>()) {}
 
-  [[nodiscard]] SolvedMotion solve(const PlanarModel& model, const PlanarTask& task,
-                                   const PlanRequest& request, StartGuess guess);
-  [[nodiscard]] ChainOutcome solve_chain(const PlanarModel& model, const PlanarTask& task,
-                                         ChainProblem& problem, StartGuess guess);
-  void refine(const PlanarModel& model, const PlanarTask& task, ChainProblem& problem,
-              SolvedMotion& best);
+  [[nodiscard]] core::Result<core::JumpPlan> plan_by_ipopt(const Trial& trial);
+  [[nodiscard]] core::Result<core::JumpPlan> climb_down(const Trial& trial);
+  [[nodiscard]] core::Result<core::JumpPlan> by_even_landing(const Trial& trial);
+  [[nodiscard]] core::Result<core::JumpPlan> by_neighbours(const Trial& trial, std::size_t count);
+  [[nodiscard]] core::Result<core::JumpPlan> by_library(const Trial& trial);
+  [[nodiscard]] core::Result<core::JumpPlan> finish(const Trial& trial, const SolvedMotion& solved);
+  [[nodiscard]] core::Result<core::JumpPlan> finish_near(const Trial& trial, const KnownJump& from);
   [[nodiscard]] core::Result<core::JumpPlan> plan_otherwise(const PlanRequest& request,
                                                             const PlanarTask& task);
 };
 
-SolvedMotion JumpPlanner::Memory::solve(const PlanarModel& model, const PlanarTask& task,
-                                        const PlanRequest& request, StartGuess guess) {
-  const bool warm = guess == StartGuess::previous;
-  const SolveOptions options{model.config.iterations_max, model.config.tolerance};
-  obstacle = {};
-  if (request.solver == Solver::ipopt) {
-    const StartPoint start{warm ? previous : kinematic_guess(model, task, layout)};
-    const SolveOutcome solved =
-        solve_with_ipopt(build_program(model, task, layout), decision_bounds(model, task, layout),
-                         decision_sizes(layout), start, options);
-    return {solved, motion_from_decision(model, task, layout, solved.x)};
-  }
-  ChainProblem problem(model, task, layout);
-  const ChainOutcome solved = solve_chain(model, task, problem, guess);
-  chain_is_solved = false;
-  obstacle = slot_name(problem.layout(), chain.tightest_slot());
-  SolvedMotion out{{solved.status, solved.iterations, solved.violation, solved.cost, chain.x()},
-                   motion_from_decision(model, task, layout, chain.x())};
-  set_correction(correction, out.motion);
-  if (acceptable(out.outcome)) refine(model, task, problem, out);
-  return out;
+core::Result<core::JumpPlan> JumpPlanner::Memory::plan_by_ipopt(const Trial& trial) {
+  const auto& [model, task, request] = trial;
+  const bool warm = request.guess == StartGuess::previous && last_by_ipopt.size() > 0;
+  const StartPoint start{warm ? last_by_ipopt : kinematic_guess(model, task, layout)};
+  const SolveOutcome solved = solve_with_ipopt(
+      build_program(model, task, layout), decision_bounds(model, task, layout),
+      decision_sizes(layout), start, {model.config.iterations_max, model.config.tolerance});
+  core::Result<core::JumpPlan> plan =
+      finish(trial, {solved, motion_from_decision(model, task, layout, solved.x)});
+  if (!plan) return plan;
+  plan.value().warm = warm;
+  last_by_ipopt = solved.x;
+  return plan;
 }
 
-/// From the last jump and what it missed between its knots, else from a guess.
-ChainOutcome JumpPlanner::Memory::solve_chain(const PlanarModel& model, const PlanarTask& task,
-                                              ChainProblem& problem, StartGuess guess) {
-  SolveOptions options{model.config.iterations_max, model.config.tolerance};
-  int spent = 0;
-  const bool warm = guess == StartGuess::previous;
-  if (warm && chain_is_solved) {
-    correction.clear_bounds();
-    problem.correct(correction);
-    options.iterations_max = kWarmIterationsMax;
-    const ChainOutcome solved = chain.solve_again(problem, options);
-    if (solved.status == SolveStatus::solved) return solved;
-    spent = solved.iterations;
-    options.iterations_max = model.config.iterations_max;
+/// A solved motion as a plan, or why it is none.
+core::Result<core::JumpPlan> JumpPlanner::Memory::finish(const Trial& trial,
+                                                         const SolvedMotion& solved) {
+  const auto& [model, task, request] = trial;
+  const SolveOutcome& outcome = solved.outcome;
+  iterations += outcome.iterations;
+  const bool by_chain = request.solver == Solver::chain;
+  obstacle = by_chain ? chain.obstacle() : std::string_view{};
+  if (!is_acceptable(outcome)) return infeasible(outcome, task, obstacle);
+  core::JumpPlan plan = plan_for(request, outcome);
+  if (std::optional<Refusal> refusal =
+          certify_and_lift(model, task, solved, request.solver, plan)) {
+    obstacle = plan.certificate.binding().name;
+    return *refusal;
   }
-  correction.clear();
-  problem.correct(correction);
-  const bool far = !warm || chain_is_solved;
-  ChainOutcome solved =
-      chain.solve(problem, far ? kinematic_guess(model, task, layout) : previous, options);
-  solved.iterations += spent;
-  return solved;
+  // Others start from the shipped rhythm of landing steps.
+  if (by_chain && &model != &even) last = chain.known(task, solved);
+  plan.iterations = iterations;
+  return plan;
 }
 
-/// Deferred correction: solves again with what the motion misses between its knots, and keeps the
-/// motion that misses least.
-void JumpPlanner::Memory::refine(const PlanarModel& model, const PlanarTask& task,
-                                 ChainProblem& problem, SolvedMotion& best) {
-  PlanarMotion motion = best.motion;
-  const auto examine = [&] {
-    return update_correction(model, task, problem.layout(), {motion, chain.slot_values()},
-                             correction)
-        .worst();
-  };
-  double least = examine();
-  double defect = least;
-  int left = kPolishIterations;
-  while (left > 0 && defect > kDefectWanted) {
-    problem.correct(correction);
-    const SolveOptions options{std::min(left, kPolishIterationsMax), model.config.tolerance, 1};
-    const ChainOutcome solved = chain.polish(problem, options);
-    left -= std::max(1, solved.iterations);
-    motion = motion_from_decision(model, task, layout, chain.x());
-    set_correction(correction, motion);
-    defect = examine();
-    if (solved.violation > kPolishHopeless) break;
-    if (defect >= least || solved.violation > kPolishViolationMax) continue;
-    least = defect;
-    best.motion = motion;
-    best.outcome.violation = solved.violation;
-    best.outcome.cost = solved.cost;
-    best.outcome.x = chain.x();
+core::Result<core::JumpPlan> JumpPlanner::Memory::finish_near(const Trial& trial,
+                                                              const KnownJump& from) {
+  core::Result<core::JumpPlan> plan =
+      finish(trial, chain.solve_near(trial.model, trial.task, from));
+  if (plan) plan.value().warm = true;
+  return plan;
+}
+
+/// The ladder: the first rung that gives a certified plan.
+core::Result<core::JumpPlan> JumpPlanner::Memory::climb_down(const Trial& trial) {
+  rung = PlanRung::solved;
+  if (trial.request.guess == StartGuess::previous && last) {
+    const KnownJump from = *last;
+    if (core::Result<core::JumpPlan> plan = finish_near(trial, from)) return plan;
+    // A jump of the library may be nearer; from the guess takes longest.
+    if (core::Result<core::JumpPlan> plan = by_neighbours(trial, 1)) return plan;
+    rung = PlanRung::solved;
   }
-  best.outcome.iterations += kPolishIterations - left;
+  const auto& [model, task, request] = trial;
+  core::Result<core::JumpPlan> first =
+      finish(trial, chain.solve(model, task, kinematic_guess(model, task, layout)));
+  if (first) return first;
+  const std::string_view first_obstacle = obstacle;
+  if (first.error().reason == Reason::certificate_refused) {
+    if (core::Result<core::JumpPlan> plan = by_even_landing(trial)) return plan;
+  }
+  if (core::Result<core::JumpPlan> plan = by_neighbours(trial, kNeighbours)) return plan;
+  if (core::Result<core::JumpPlan> plan = by_library(trial)) return plan;
+  obstacle = first_obstacle;
+  return first;
+}
+
+core::Result<core::JumpPlan> JumpPlanner::Memory::by_even_landing(const Trial& trial) {
+  if (&trial.model != &straight) return no_plan();
+  rung = PlanRung::even_landing;
+  const Trial again{even, trial.task, trial.request};
+  return finish(again, chain.solve(even, trial.task, kinematic_guess(even, trial.task, layout)));
+}
+
+core::Result<core::JumpPlan> JumpPlanner::Memory::by_neighbours(const Trial& trial,
+                                                                std::size_t count) {
+  rung = PlanRung::neighbour;
+  for (const KnownJump* near : library->nearest(trial.task, count)) {
+    if (core::Result<core::JumpPlan> plan = finish_near(trial, *near)) return plan;
+  }
+  return no_plan();
+}
+
+/// A jump as the library has it, to its own distance, where the ground bears that.
+core::Result<core::JumpPlan> JumpPlanner::Memory::by_library(const Trial& trial) {
+  rung = PlanRung::library;
+  const core::LandingTarget& wanted = trial.request.target;
+  if (!side_target(wanted).is_straight()) return no_plan();
+  const double shift =
+      std::isfinite(wanted.margin) ? std::clamp(wanted.margin, 0.0, kShiftMax) : kShiftMax;
+  for (const KnownJump* jump : library->nearest(trial.task, library->jumps().size())) {
+    if (!is_at_hand(*jump, trial.task, shift)) continue;
+    const PlanRequest request = moved_to(trial.request, jump->distance);
+    const core::Result<PlanarTask> task = planar_task(trial.model, request);
+    if (!task) continue;
+    SolvedMotion motion;
+    motion.outcome.status = SolveStatus::solved;
+    motion.motion = motion_of(*jump, trial.model, *task, layout);
+    core::JumpPlan plan = plan_for(request, motion.outcome);
+    if (certify_and_lift(trial.model, *task, motion, Solver::chain, plan)) continue;
+    plan.iterations = iterations;
+    plan.warm = true;
+    return plan;
+  }
+  return no_plan();
 }
 
 /// By a formulation that is compared with the planner's own.
@@ -271,13 +330,27 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::plan_otherwise(const PlanReque
   return plan;
 }
 
-JumpPlanner::JumpPlanner(const PlannerConfig& config, const model::RobotParameters& robot)
-    : memory_(std::make_unique<Memory>(robot, config)) {
+std::string_view plan_rung_name(PlanRung rung) {
+  switch (rung) {
+    case PlanRung::solved: return "solved";
+    case PlanRung::even_landing: return "even_landing";
+    case PlanRung::neighbour: return "neighbour";
+    case PlanRung::library: return "library";
+  }
+  return "";
+}
+
+JumpPlanner::JumpPlanner(const PlannerConfig& config, const model::RobotParameters& robot,
+                         std::shared_ptr<const JumpLibrary> library)
+    : memory_(std::make_unique<Memory>(robot, config, std::move(library))) {
   const StepCounts& steps = config.steps;
   const int knots = steps.takeoff + steps.flight + steps.landing + 1;
   if (knots > static_cast<int>(core::JumpPlan::kMaxKnots)) {
     throw std::invalid_argument("planner.steps: together at most " +
                                 std::to_string(core::JumpPlan::kMaxKnots - 1));
+  }
+  if (!memory_->library->fits(steps)) {
+    throw std::invalid_argument("planner.steps: the library of jumps has others");
   }
 }
 
@@ -287,6 +360,14 @@ std::string_view JumpPlanner::obstacle() const {
 
 int JumpPlanner::iterations() const {
   return memory_->iterations;
+}
+
+PlanRung JumpPlanner::rung() const {
+  return memory_->rung;
+}
+
+const KnownJump* JumpPlanner::last() const {
+  return memory_->last ? &*memory_->last : nullptr;
 }
 
 JumpPlanner::~JumpPlanner() = default;
@@ -302,23 +383,9 @@ core::Result<core::JumpPlan> JumpPlanner::plan(const PlanRequest& request) {
   if (!task) return task.error();
   if (request.formulation != Formulation::variable) return memory_->plan_otherwise(request, *task);
 
-  const bool warm = request.guess == StartGuess::previous && memory_->previous.size() > 0;
-  const SolvedMotion solved =
-      memory_->solve(model, *task, request, warm ? StartGuess::previous : StartGuess::kinematic);
-  const SolveOutcome& outcome = solved.outcome;
-  memory_->iterations = outcome.iterations;
-  if (!acceptable(outcome)) return infeasible(outcome, *task, memory_->obstacle);
-
-  core::JumpPlan plan = plan_for(request, outcome);
-  plan.warm = warm;
-  if (std::optional<Refusal> refusal =
-          certify_and_lift(model, *task, solved, request.solver, plan)) {
-    memory_->obstacle = plan.certificate.binding().name;
-    return *refusal;
-  }
-  memory_->previous = outcome.x;
-  memory_->chain_is_solved = request.solver == Solver::chain;
-  return plan;
+  const Trial trial{model, *task, request};
+  return request.solver == Solver::ipopt ? memory_->plan_by_ipopt(trial)
+                                         : memory_->climb_down(trial);
 }
 
 }  // namespace hopscotch::planner

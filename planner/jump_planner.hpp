@@ -15,11 +15,24 @@
 
 namespace hopscotch::planner {
 
+class JumpLibrary;
+struct KnownJump;
+
 /// Where the solver starts from.
 enum class StartGuess : std::uint8_t {
   kinematic,  ///< Closed form, from the request alone: the same request gives the same plan.
   previous,   ///< The planner's last solved jump where there is one, else kinematic.
 };
+
+/// How a plan was come by: each rung is tried when the one before gives no certified plan. Below
+/// the last one there is no plan, and the robot stands.
+enum class PlanRung : std::uint8_t {
+  solved,        ///< From the start guess that was asked for.
+  even_landing,  ///< With landing steps of nearly equal length, from the closed-form guess.
+  neighbour,     ///< Solved from a jump of the library close by.
+  library,  ///< A jump of the library as it is, to its own distance; certified for this ground.
+};
+[[nodiscard]] std::string_view plan_rung_name(PlanRung rung);
 
 /// Who solves the nonlinear program.
 enum class Solver : std::uint8_t {
@@ -46,8 +59,12 @@ struct PlanRequest {
 /// instance per thread.
 class JumpPlanner {
  public:
-  /// @throws std::invalid_argument if the configured steps do not fit into a JumpPlan.
-  JumpPlanner(const PlannerConfig& config, const model::RobotParameters& robot);
+  /// @param library For jumps that are hard to solve; shared, since the planners of a program use
+  ///                the same one, each on its own thread. None: there are no rungs but the first.
+  /// @throws std::invalid_argument if the configured steps do not fit into a JumpPlan, or are not
+  ///         those of the library.
+  JumpPlanner(const PlannerConfig& config, const model::RobotParameters& robot,
+              std::shared_ptr<const JumpLibrary> library = nullptr);
   ~JumpPlanner();
   JumpPlanner(JumpPlanner&&) noexcept;
   JumpPlanner& operator=(JumpPlanner&&) noexcept;
@@ -55,7 +72,9 @@ class JumpPlanner {
   /// @return a plan that ends at rest, or why there is none: target_malformed (not finite, beside
   ///         the jump line, terrain unknown on the way), out_of_reach (final posture impossible),
   ///         bad_sensor_value (start not finite), plan_infeasible (with iterations and violation),
-  ///         certificate_refused (with the binding limit). `iterations` counts the solver's.
+  ///         certificate_refused (with the binding limit): of the first rung. `iterations` counts
+  ///         the solver's, of all rungs. A plan by rung `library` lands up to 3 cm before or behind
+  ///         the target asked for; its own target says where.
   core::Result<core::JumpPlan> plan(const PlanRequest& request);
 
   /// The limit that stood in the way of the last refused request, in the words of the certificate;
@@ -63,6 +82,10 @@ class JumpPlanner {
   [[nodiscard]] std::string_view obstacle() const;
   /// Iterations of the last solve.
   [[nodiscard]] int iterations() const;
+  /// Of the last plan.
+  [[nodiscard]] PlanRung rung() const;
+  /// The last jump that was solved by the chain solver and certified; null before the first.
+  [[nodiscard]] const KnownJump* last() const;
 
  private:
   struct Memory;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 
 namespace hopscotch::planner {
@@ -10,6 +11,14 @@ struct SolveOptions {
   int iterations_max = 0;
   double tolerance = 0.0;  ///< Of the scaled optimality conditions.
   int iterations_min = 0;  ///< So many are made even where the start is already good enough.
+};
+
+struct SolveOutcome {
+  SolveStatus status = SolveStatus::failed;
+  int iterations = 0;
+  double violation = 0.0;  ///< Largest breach of rows and bounds.
+  double cost = 0.0;
+  Eigen::VectorXd x;
 };
 
 }  // namespace hopscotch::planner

@@ -96,7 +96,7 @@ TEST(ChainSolver, StartsAgainFromANeighbour) {
   ASSERT_EQ(chain.outcome.status, SolveStatus::solved);
   const PlanarTask next = task(chain.model, 0.42, 0.0);
   const ChainProblem problem(chain.model, next, chain.layout);
-  const ChainOutcome warm = chain.solver.solve_again(problem, kOnLine);
+  const ChainOutcome warm = chain.solver.solve_near(problem, chain.solver.solution(), kOnLine);
   EXPECT_EQ(warm.status, SolveStatus::solved);
   EXPECT_LT(warm.iterations, chain.outcome.iterations);
   const SolvedChain cold(0.42, 0.0, kOnLine);
@@ -106,9 +106,10 @@ TEST(ChainSolver, StartsAgainFromANeighbour) {
 TEST(ChainSolver, SolvingAllocatesNothing) {
   SolvedChain chain(0.40, 0.0, kOnLine);
   const Eigen::VectorXd guess = kinematic_guess(chain.model, chain.task, chain.layout);
+  const ChainSolution solution = chain.solver.solution();
   const std::size_t before = core::allocation_count();
   chain.outcome = chain.solver.solve(chain.problem, guess, kOnLine);
-  chain.outcome = chain.solver.solve_again(chain.problem, kOnLine);
+  chain.outcome = chain.solver.solve_near(chain.problem, solution, kOnLine);
   EXPECT_EQ(core::allocation_count(), before);
   EXPECT_EQ(chain.outcome.status, SolveStatus::solved);
 }
