@@ -17,11 +17,15 @@ namespace {
 /// Landings farther from their target are named one by one [m].
 constexpr double kLandingErrorWanted = 0.02;
 
-/// `count` of the targets from standing, spread evenly over the file.
-std::vector<BenchTarget> sampled(int count) {
+/// `count` of the targets from standing, spread evenly over the file. Without those whose step up
+/// begins under the toes: there is nothing to stand on.
+std::vector<BenchTarget> sampled(const model::RobotParameters& robot, int count) {
+  constexpr double kToeRoom = 0.01;  // [m]
+  const double toe = 0.5 * (robot.toe + robot.heel) + kToeRoom;
   std::vector<BenchTarget> standing;
   for (const BenchTarget& target : read_targets()) {
-    if (target.start == planner::StartKind::stand) standing.push_back(target);
+    const bool flyable = target.height == 0.0 || step_of(target).edge > toe;
+    if (flyable && target.start == planner::StartKind::stand) standing.push_back(target);
   }
   std::vector<BenchTarget> chosen;
   const std::size_t wanted = std::min(static_cast<std::size_t>(count), standing.size());
@@ -61,7 +65,7 @@ struct Tally {
 nlohmann::ordered_json bench_flights(const BenchSetup& setup, int flights) {
   planner::JumpPlanner planner(setup.config.planner, setup.robot,
                                shipped_jumps(setup.robot.name, setup.config.planner.steps));
-  const std::vector<BenchTarget> targets = sampled(flights);
+  const std::vector<BenchTarget> targets = sampled(setup.robot, flights);
   Tally tally;
   for (const BenchTarget& target : targets) {
     const core::Result<core::JumpPlan> plan = planner.plan(request_for(setup, target));
