@@ -24,7 +24,9 @@ void JumpScorer::update(const sim::PlantTruth& truth, const core::RobotState& us
     judge(truth);
     begin(truth, plan);
   }
-  phase_ = status.phase;
+  // Flights that nobody planned, of a recovery hop or a fall, are no part of the jump.
+  const bool unplanned = status.phase == RobotPhase::flight && status.plan_id == 0;
+  phase_ = unplanned ? RobotPhase::recover : status.phase;
   if (open_) follow(truth, used);
 }
 

@@ -41,6 +41,7 @@ ControlConfig ControlConfig::load(const core::ConfigReader& section, double mpc_
   config.mpc_delay = mpc_delay;
   config.gains = JointGains::load(section.section("gains"));
   config.supervisor = SupervisorConfig::load(section.section("supervisor"));
+  config.recovery_hop = RecoveryHopConfig::load(section.section("recovery_hop"));
   config.actuation_delay = 1e-3 * section.number("actuation_delay_ms", Range::closed(0.0, 20.0));
   config.wrench_age_max = 1e-3 * section.number("wrench_age_max_ms", Range::closed(1.0, 200.0));
   config.anchor_time = section.number("anchor_time_s", Range::closed(0.0, 1.0));

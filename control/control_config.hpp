@@ -1,6 +1,7 @@
 #pragma once
 
 #include "control/estimator_config.hpp"
+#include "control/recovery_hop.hpp"
 #include "control/wrench_mpc.hpp"
 #include "core/ablation.hpp"
 #include "core/config_reader.hpp"
@@ -45,6 +46,7 @@ struct SupervisorConfig {
 struct ControlConfig {
   JointGains gains;
   SupervisorConfig supervisor;
+  RecoveryHopConfig recovery_hop;
   double actuation_delay = 0.0;  ///< From the command's tick to torque at the joint, as known [s].
   double mpc_delay = 0.0;        ///< From the MPC's state to the tick that uses its answer [s].
   double wrench_age_max = 0.0;   ///< An MPC answer older than this is not used [s].

@@ -195,8 +195,8 @@ void ControlTick::enter_phase(const core::RobotState& state) noexcept {
   last_phase_ = phase();
   if (!phase_changed_) return;
   if (phase() == RobotPhase::flight && core::is_standing(before)) {
-    settle(state, config_.settle_time);
-  } else if (phase() == RobotPhase::landing && is_falling_) {
+    if (!supervisor_.is_hopping()) settle(state, config_.settle_time);
+  } else if (phase() == RobotPhase::landing && (is_falling_ || was_hopping_)) {
     settle(state, catch_time(state));
     impact_pending_ = true;
   } else if (phase() == RobotPhase::landing) {
@@ -205,7 +205,8 @@ void ControlTick::enter_phase(const core::RobotState& state) noexcept {
     start_ = state.stamp.after(
         -((follows ? plan_.touchdown_time : plan_.duration) + config_.actuation_delay));
   }
-  is_falling_ = phase() == RobotPhase::flight && core::is_standing(before);
+  is_falling_ =
+      phase() == RobotPhase::flight && core::is_standing(before) && !supervisor_.is_hopping();
 }
 
 /// The impact of a fall is over: the feet have lost their speed and taken some of the trunk's, so
@@ -215,6 +216,22 @@ void ControlTick::settle_again(const core::RobotState& state) noexcept {
   if (!impact_pending_ || state.stamp.since(touchdown_) < kImpactTime) return;
   impact_pending_ = false;
   if (phase() == RobotPhase::landing) settle(state, catch_time(state));
+}
+
+/// A body whose capture point has left the soles falls, wherever the soles push: they have to be
+/// where it falls to.
+void ControlTick::hop_if_it_must(const core::RobotState& state) noexcept {
+  const RecoveryHopConfig& hop = config_.recovery_hop;
+  const bool on_ground = phase() == RobotPhase::landing || core::is_standing(phase());
+  const bool loaded = state.contact[0] || state.contact[1];
+  if (!on_ground || supervisor_.is_hopping() || !loaded) return;
+  if (state.stamp.since(touchdown_) < hop.wait || !must_hop(hop, robot_, state)) return;
+  if (!make_recovery_hop(hop, robot_, state, stand_, hop_plan_) || !supervisor_.hop()) return;
+  has_next_ = false;
+  plan_ = hop_plan_;
+  start_ = state.stamp;
+  placement_.takeoff = {Eigen::Vector3d::Zero(), centres(model::sole_poses(robot_, state))};
+  placement_.landing = {Eigen::Vector3d::Zero(), centres(plan_.target.X_WF)};
 }
 
 void ControlTick::observe_drives(const core::SensorReadings& readings) noexcept {
@@ -257,10 +274,13 @@ core::JointCommand ControlTick::next_command(const core::RobotState& state) noex
     has_next_ = false;
     settle(state, config_.settle_time);
   }
+  hop_if_it_must(state);
   supervisor_.update(state, plan_, command_time(state.stamp) - config_.actuation_delay);
   enter_phase(state);
+  was_hopping_ = supervisor_.is_hopping();
   settle_again(state);
-  if (phase() == RobotPhase::landing || core::is_standing(phase())) follow_feet(state);
+  const bool on_ground = phase() == RobotPhase::landing || core::is_standing(phase());
+  if (on_ground && !was_hopping_) follow_feet(state);
 
   core::JointCommand command;
   command.stamp = state.stamp;
@@ -319,7 +339,8 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
 
 ContactExpectation ControlTick::expected_contact() const noexcept {
   const double time = status_.plan_time;
-  if (core::is_pushing_off(phase())) {
+  if (core::is_pushing_off(phase()) ||
+      (supervisor_.is_hopping() && phase() == RobotPhase::recover)) {
     const double leave_time = config_.estimator.contact.leave_time;
     return time < plan_.liftoff_time - leave_time ? ContactExpectation::support
                                                   : ContactExpectation::leaving;
@@ -401,7 +422,8 @@ void ControlTick::question(MpcQuestion& out) const noexcept {
   out.form = core::is_pushing_off(phase()) ? takeoff_form() : MpcForm::full;
   // The body runs `actuation_delay` behind the commands; it will have moved on by `delay`.
   const double time = command_time(state_.stamp) + config_.mpc_delay;
-  const double phase_begin = core::is_pushing_off(phase()) ? 0.0 : plan_.touchdown_time;
+  const bool leaving = core::is_pushing_off(phase()) || supervisor_.is_hopping();
+  const double phase_begin = leaving ? 0.0 : plan_.touchdown_time;
   out.state = extrapolate(state_, delay, sample_plan(plan_, std::max(time - delay, phase_begin)),
                           sample_plan(plan_, time));
   out.reference.stamp = out.state.stamp;

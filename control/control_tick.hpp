@@ -9,6 +9,7 @@
 #include "control/delay_estimator.hpp"
 #include "control/jump_supervisor.hpp"
 #include "control/plan_follower.hpp"
+#include "control/recovery_hop.hpp"
 #include "control/stand_plan.hpp"
 #include "control/wrench_mpc.hpp"
 #include "core/control_reference.hpp"
@@ -103,6 +104,7 @@ class ControlTick {
   void begin_next(const core::RobotState& state) noexcept;
   void settle(const core::RobotState& state, double duration) noexcept;
   void settle_again(const core::RobotState& state) noexcept;
+  void hop_if_it_must(const core::RobotState& state) noexcept;
   [[nodiscard]] double catch_time(const core::RobotState& state) const noexcept;
   [[nodiscard]] core::JointCommand next_command(const core::RobotState& state) noexcept;
   void enter_phase(const core::RobotState& state) noexcept;
@@ -124,6 +126,7 @@ class ControlTick {
   StandTarget stand_;
   core::JumpPlan plan_;
   core::JumpPlan next_;
+  core::JumpPlan hop_plan_;  ///< Being made.
   bool has_next_ = false;
   core::Stamp start_;  ///< Of the plan's clock, as commands see it.
   bool started_ = false;
@@ -133,6 +136,7 @@ class ControlTick {
   PlanPlacement placement_;
   bool is_falling_ = false;      ///< In flight without a jump.
   bool impact_pending_ = false;  ///< Of the end of a fall.
+  bool was_hopping_ = false;     ///< At the end of the last tick.
   DelayEstimator delays_;
   core::RobotState state_;
   MpcAnswer answer_;

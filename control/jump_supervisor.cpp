@@ -34,7 +34,7 @@ Reason JumpSupervisor::find_fault(const core::RobotState& state) const noexcept 
   const bool finite = state.q.allFinite() && state.dq.allFinite() && state.p_WB.allFinite() &&
                       state.R_WB.allFinite() && state.v_WB.allFinite() && state.w_WB.allFinite();
   if (!finite) return Reason::bad_sensor_value;
-  const bool standing = core::is_standing(phase_);
+  const bool standing = core::is_standing(phase_) && !hopping_;
   const double tilt = standing ? config_.tilt_standing : config_.tilt_max;
   if (state.R_WB(2, 2) < std::cos(tilt)) return Reason::tilt_limit;
   const double beyond = std::max((lower_ - state.q).maxCoeff(), (state.q - upper_).maxCoeff());
@@ -67,6 +67,7 @@ void JumpSupervisor::advance(const core::RobotState& state, const core::JumpPlan
       if (plan_time >= plan.liftoff_time + config_.touchdown_from * flight &&
           (state.contact[0] || state.contact[1])) {
         phase_ = RobotPhase::landing;
+        hopping_ = false;
       } else if (plan_time > plan.touchdown_time + config_.flight_overtime) {
         latch(Reason::no_touchdown);
       }
@@ -76,7 +77,11 @@ void JumpSupervisor::advance(const core::RobotState& state, const core::JumpPlan
       phase_ = at_rest(state) ? RobotPhase::stand : RobotPhase::recover;
       break;
     case RobotPhase::recover:
-      if (at_rest(state)) phase_ = RobotPhase::stand;
+      if (hopping_) {
+        if (plan_time >= plan.liftoff_time) phase_ = RobotPhase::flight;
+      } else if (at_rest(state)) {
+        phase_ = RobotPhase::stand;
+      }
       break;
     case RobotPhase::stand:
     case RobotPhase::hold:
@@ -96,7 +101,7 @@ RobotPhase JumpSupervisor::update(const core::RobotState& state, const core::Jum
     return phase_;
   }
   advance(state, plan, plan_time);
-  if (hold_waits_ && core::is_standing(phase_)) {
+  if (hold_waits_ && !hopping_ && core::is_standing(phase_)) {
     phase_ = RobotPhase::hold;
     hold_waits_ = false;
   }
@@ -115,9 +120,17 @@ bool JumpSupervisor::call_off() noexcept {
   return true;
 }
 
+bool JumpSupervisor::hop() noexcept {
+  if (phase_ != RobotPhase::landing && !core::is_standing(phase_)) return false;
+  hold_waits_ = hold_waits_ || phase_ == RobotPhase::hold;
+  phase_ = RobotPhase::recover;
+  hopping_ = true;
+  return true;
+}
+
 bool JumpSupervisor::hold() noexcept {
   if (core::is_limp(phase_)) return false;
-  if (core::is_standing(phase_) || phase_ == RobotPhase::crouch) {
+  if ((core::is_standing(phase_) && !hopping_) || phase_ == RobotPhase::crouch) {
     phase_ = RobotPhase::hold;
   } else {
     hold_waits_ = true;
@@ -136,6 +149,7 @@ bool JumpSupervisor::damp() noexcept {
   if (phase_ == RobotPhase::fault) return false;
   phase_ = RobotPhase::damp;
   hold_waits_ = false;
+  hopping_ = false;
   return true;
 }
 
@@ -151,6 +165,7 @@ void JumpSupervisor::latch(Reason fault) noexcept {
   fault_ = fault;
   phase_ = RobotPhase::fault;
   hold_waits_ = false;
+  hopping_ = false;
 }
 
 }  // namespace hopscotch::control

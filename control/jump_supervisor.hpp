@@ -19,7 +19,10 @@ namespace hopscotch::control {
 /// | flight                       | landing | a foot bears load after `touchdown_from` of it  |
 /// | landing                      | stand   | the plan's duration has passed, at rest         |
 /// | landing                      | recover | the plan's duration has passed, not at rest     |
-/// | recover                      | stand   | at rest                                         |
+/// | recover                      | stand   | at rest, and no recovery hop under way          |
+/// | stand, landing, recover      | recover | a recovery hop begins                           |
+/// | hold                         | recover | the same; it holds again afterwards             |
+/// | recover                      | flight  | a recovery hop's lift-off time has passed       |
 /// | stand, recover, hold         | flight  | both feet unloaded for `fall_time`: it falls    |
 /// | stand, crouch, recover       | hold    | the operator's hold                             |
 /// | takeoff, flight, landing     | hold    | a hold asked for there, once stand or recover   |
@@ -51,6 +54,12 @@ class JumpSupervisor {
   /// commit point, where nothing is changed.
   [[nodiscard]] bool call_off() noexcept;
 
+  /// A recovery hop begins: the robot is about to fall and jumps after its capture point. False
+  /// where it is not on the ground, or on it only to leave it; nothing is changed then.
+  [[nodiscard]] bool hop() noexcept;
+  /// From the beginning of a recovery hop to its touchdown.
+  [[nodiscard]] bool is_hopping() const { return hopping_; }
+
   /// The operator's wishes; false = refused in this phase.
   [[nodiscard]] bool hold() noexcept;
   /// @param state Decides whether a limp robot may get up.
@@ -80,6 +89,7 @@ class JumpSupervisor {
   core::Reason fault_ = core::Reason::none;
   double commit_time_ = 0.0;  ///< Of the plan being executed [s].
   bool hold_waits_ = false;
+  bool hopping_ = false;
   core::Stamp loaded_;  ///< A foot bore load for the last time.
 };
 

@@ -106,6 +106,29 @@ TEST_F(ControlRecoveryTest, AJumpIsCalledOffWhenTheBodyStraysBeforeTheCommitPoin
   EXPECT_EQ(control.phase(), RobotPhase::stand);
 }
 
+TEST_F(ControlRecoveryTest, ABodyThatFallsOverItsSolesIsHoppedAfter) {
+  ControlConfig config = test_config();
+  config.recovery_hop.excess_along = 0.01;
+  ControlTick control(config, robot_, StandTarget{state_.q, 0.0});
+  step(control);
+  for (int i = 0; i < 100; ++i) step(control);
+  ASSERT_EQ(control.phase(), RobotPhase::stand);
+  state_.v_WB.x() = 0.8;
+  step(control);
+  ASSERT_EQ(control.phase(), RobotPhase::recover);
+  const double before = model::sole_poses(robot_, state_)[0].translation().x();
+  run_to(control, RobotPhase::flight);
+  EXPECT_FALSE(control.wants_wrenches());
+  EXPECT_GT(control.plan().target.X_WF[0].translation().x(), before + 0.1);
+  for (int i = 0; i < 120; ++i) step(control);
+  state_.contact = {true, true};
+  state_.v_WB.setZero();
+  step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::landing);
+  for (int i = 0; i < 500; ++i) step(control);
+  EXPECT_EQ(control.phase(), RobotPhase::stand);
+}
+
 TEST_F(ControlRecoveryTest, PastTheCommitPointAJumpGoesOnWhateverHappens) {
   ControlConfig config = test_config();
   config.supervisor.stray_max = 1.0;

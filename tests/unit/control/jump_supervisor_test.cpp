@@ -138,9 +138,9 @@ TEST_F(JumpSupervisorTest, AStandWithoutGroundIsAFall) {
 }
 
 /// What can happen to the machine besides time.
-enum class Event { begin, call_off, hold, release, damp, clear, fault };
-constexpr std::array<Event, 7> kEvents{Event::begin, Event::call_off, Event::hold, Event::release,
-                                       Event::damp,  Event::clear,    Event::fault};
+enum class Event { begin, call_off, hop, hold, release, damp, clear, fault };
+constexpr std::array<Event, 8> kEvents{Event::begin,   Event::call_off, Event::hop,   Event::hold,
+                                       Event::release, Event::damp,     Event::clear, Event::fault};
 constexpr std::array<RobotPhase, 9> kPhases{
     RobotPhase::stand,  RobotPhase::crouch,  RobotPhase::takeoff,
     RobotPhase::flight, RobotPhase::landing, RobotPhase::recover,
@@ -162,6 +162,10 @@ Outcome expected_outcome(RobotPhase from, Event event) {
     case Event::call_off: {
       const bool can = from == RobotPhase::crouch;
       return {can ? RobotPhase::landing : from, can};
+    }
+    case Event::hop: {
+      const bool can = from == RobotPhase::landing || core::is_standing(from);
+      return {can ? RobotPhase::recover : from, can};
     }
     case Event::hold: {
       const bool at_once = core::is_standing(from) || from == RobotPhase::crouch;
@@ -211,6 +215,7 @@ class EveryPhase : public JumpSupervisorTest {
     switch (event) {
       case Event::begin: machine.begin_jump(plan_); return true;
       case Event::call_off: return machine.call_off();
+      case Event::hop: return machine.hop();
       case Event::hold: return machine.hold();
       case Event::release: return machine.release(state_);
       case Event::damp: return machine.damp();
@@ -264,6 +269,31 @@ TEST_F(EveryPhase, ALimpRobotStaysDownWhenItCannotStand) {
   lying.R_WB = model::rotation_from_rpy({1.4, 0.0, 0.0});
   EXPECT_FALSE(machine.release(lying));
   EXPECT_EQ(machine.phase(), RobotPhase::damp);
+}
+
+TEST_F(EveryPhase, ARecoveryHopLeavesTheGroundByItsClockAndEndsWithTheTouchdown) {
+  for (const RobotPhase phase : {RobotPhase::stand, RobotPhase::landing, RobotPhase::hold}) {
+    JumpSupervisor machine = at(phase);
+    ASSERT_TRUE(machine.hop());
+    EXPECT_TRUE(machine.is_hopping());
+    EXPECT_EQ(machine.update(state_, plan_, 0.199), RobotPhase::recover);  // though at rest
+    core::RobotState flying = state_;
+    flying.contact = {false, false};
+    EXPECT_EQ(machine.update(flying, plan_, 0.200), RobotPhase::flight);
+    EXPECT_TRUE(machine.is_hopping());
+    EXPECT_EQ(machine.update(state_, plan_, 0.260), RobotPhase::landing);
+    EXPECT_FALSE(machine.is_hopping());
+    const bool held = phase == RobotPhase::hold;
+    EXPECT_EQ(machine.update(state_, plan_, 0.420), held ? RobotPhase::hold : RobotPhase::stand);
+  }
+}
+
+TEST_F(EveryPhase, AHoldDuringARecoveryHopWaitsForItsLanding) {
+  JumpSupervisor machine = at(RobotPhase::recover);
+  ASSERT_TRUE(machine.hop());
+  EXPECT_TRUE(machine.hold());
+  EXPECT_EQ(machine.update(state_, plan_, 0.1), RobotPhase::recover);
+  EXPECT_TRUE(machine.hold_waits());
 }
 
 TEST_F(JumpSupervisorTest, TheCommitPointIsWhereTheBodyBeginsToRise) {
