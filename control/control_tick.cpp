@@ -72,6 +72,30 @@ double beyond(double deviation, double dead) {
   return std::copysign(std::max(0.0, std::abs(deviation) - dead), deviation);
 }
 
+/// The trunk comes down leaning otherwise than planned, e.g. after a push in flight. Righting it at
+/// once would throw the body up and over: the plan's lean is approached within `kLeanTime`, the
+/// legs as planned.
+/// @param pitch At touchdown [rad]. @param[in,out] plan Its landing is changed.
+void lean_landing(double pitch, core::JumpPlan& plan) {
+  constexpr double kLeanDead = 0.1;   // touchdowns of undisturbed jumps scatter so much [rad]
+  constexpr double kLeanTime = 0.25;  // [s]
+  const double lean = beyond(pitch - sample_plan(plan, plan.touchdown_time).rpy.y(), kLeanDead);
+  for (std::size_t i = 0; i < plan.knot_count; ++i) {
+    core::JumpKnot& knot = plan.knots[i];
+    const double s = (knot.time - plan.touchdown_time) / kLeanTime;
+    if (lean == 0.0 || knot.phase != core::JumpPhase::landing || s >= 1.0) continue;
+    const double angle = lean * (1.0 + s * s * (2.0 * s - 3.0));
+    const double rate = lean / kLeanTime * 6.0 * s * (s - 1.0);
+    const Eigen::AngleAxisd heading(knot.rpy.z(), Eigen::Vector3d::UnitZ());
+    knot.rpy.y() += angle;
+    knot.w_WB += heading * Eigen::Vector3d(0.0, rate, 0.0);
+    for (const core::Leg leg : core::kAllLegs) {
+      knot.q[core::joint_index(leg, core::Joint::hip_pitch)] -= angle;
+      knot.dq[core::joint_index(leg, core::Joint::hip_pitch)] -= rate;
+    }
+  }
+}
+
 /// A CoM that flies faster than planned, after a push or a slip, needs the feet further on when it
 /// lands: by the speed times the time constant of the pendulum it then is. The legs turn about the
 /// hips, the ankles keep the soles level.
@@ -202,6 +226,7 @@ void ControlTick::enter_phase(const core::RobotState& state) noexcept {
   } else if (phase() == RobotPhase::landing) {
     const bool follows = config_.ablation != core::Ablation::no_landing_plan;
     touchdown_ = state.stamp;
+    lean_landing(model::rpy_from_rotation(state.R_WB).y(), plan_);
     start_ = state.stamp.after(
         -((follows ? plan_.touchdown_time : plan_.duration) + config_.actuation_delay));
   }
