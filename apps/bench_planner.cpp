@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <map>
+#include <string_view>
 #include <vector>
 
 #include "apps/bench.hpp"
@@ -28,15 +30,19 @@ constexpr double kMoved = 0.02;
 
 struct PlannerSamples {
   std::vector<double> plan_ms;
-  std::vector<double> dense_violation;  ///< Of the plans that were certified.
+  std::vector<double> iterations;         ///< Of all rungs.
+  std::vector<double> dense_violation;    ///< Of the plans that were certified.
+  std::map<std::string_view, int> rungs;  ///< Of the same.
   int planned = 0;
 
   void plan(planner::JumpPlanner& planner, const planner::PlanRequest& request) {
     const Stopwatch watch(TimeOf::thread);
     const core::Result<core::JumpPlan> result = planner.plan(request);
     plan_ms.push_back(watch.milliseconds());
+    iterations.push_back(planner.iterations());
     if (!result) return;
     ++planned;
+    ++rungs[planner::plan_rung_name(planner.rung())];
     dense_violation.push_back(result->certificate.dense_max_violation);
   }
 };
@@ -125,10 +131,14 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
           {"solver", "chain"},
           {"cold_ms", percentile_group(cold.plan_ms, 1.0)},
           {"warm_ms", percentile_group(warm.plan_ms, 1.0)},
+          {"cold_iterations", percentile_group(cold.iterations, 1.0)},
+          {"warm_iterations", percentile_group(warm.iterations, 1.0)},
           {"iteration_ms", percentile_group(iterations.iteration_ms, 1.0)},
           {"ipopt_ms", percentile_group(ipopt.plan_ms, 1.0)},
-          {"success", iterations.solved / count},
+          {"success", cold.planned / count},  // certified plans
           {"certified", cold.planned / count},
+          {"solved_from_guess", iterations.solved / count},
+          {"rungs", cold.rungs},
           {"dense_violation", percentile_group(cold.dense_violation, 1.0)},
           {"warm_success", warm.planned / std::max(1.0, static_cast<double>(warm.plan_ms.size()))},
           {"targets", targets.size()},
