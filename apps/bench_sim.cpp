@@ -7,6 +7,7 @@
 #include "apps/bench.hpp"
 #include "apps/stopwatch.hpp"
 #include "footstep/landing_selector.hpp"
+#include "perception/occupancy.hpp"
 #include "perception/one_step.hpp"
 #include "perception/terrain_mapper.hpp"
 #include "planner/step_target.hpp"
@@ -141,6 +142,8 @@ nlohmann::ordered_json bench_perception(const BenchSetup& setup) {
   const double memory_before = resident_mebibytes();
   std::vector<double> render_ms;
   std::vector<double> frame_ms;
+  perception::OccupancyMemory volume(setup.config.perception.occupancy);
+  std::vector<double> octomap_ms;
   constexpr int kFrames = 300;
   for (int frame = 0; frame < kFrames; ++frame) {
     state.stamp = core::Stamp::from_seconds((frame + 0.5) / scenario.camera.rate);
@@ -156,9 +159,14 @@ nlohmann::ordered_json bench_perception(const BenchSetup& setup) {
         config, mapper.map(), perception::stance_pose(config, setup.robot, state));
     (void)selector.choose({mapper.map(), terrain}, state, {});
     frame_ms.push_back(watch.milliseconds());
+    const Stopwatch voxels(TimeOf::thread);
+    if (!volume.insert(*mapper.image(), image->stamp)) continue;
+    (void)volume.hanging();
+    octomap_ms.push_back(voxels.milliseconds());
   }
   return {{"n", frame_ms.size()},
           {"frame_ms", percentile_group(frame_ms, 1.0)},
+          {"octomap_ms", percentile_group(octomap_ms, 1.0)},
           {"render_ms", percentile_group(render_ms, 1.0)},
           {"memory_MiB", resident_mebibytes() - memory_before}};
 }

@@ -50,6 +50,7 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
       oracle_(std::move(oracle)),
       estimator_(config.control.estimator, robot, mission.start),
       mapper_(config.perception, robot),
+      volume_(config.perception.occupancy),
       doubt_(config.footstep.doubt),
       selector_(config.footstep, robot),
       planner_(config.planner, robot, shipped_jumps(robot.name, config.planner.steps)),
@@ -62,6 +63,12 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
                sight.exposed = seen.frame.stamp;
                sight.status = mapper_.integrate(seen.frame, seen.at_exposure);
                sight.map = std::make_shared<const core::TerrainMap>(mapper_.map());
+               const bool fused = sight.status == perception::MapStatus::fused;
+               sight.hanging.reset();
+               if (fused && volume_.insert(*mapper_.image(), seen.frame.stamp)) {
+                 sight.hanging =
+                     std::make_shared<const std::vector<Eigen::Vector3f>>(volume_.hanging());
+               }
              }),
       decision_({.name = "planning",
                  .latency = config.runtime.planning_latency,
@@ -161,6 +168,7 @@ void Pipeline::start(const core::RobotState& state) {
 void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
   if (Sight* const sight = sight_.take(now)) {
     map_ = std::move(sight->map);
+    if (sight->hanging) hanging_ = std::move(sight->hanging);
     const bool fused = sight->status == perception::MapStatus::fused;
     if (fused && sight->exposed > landed_) ++frames_since_landing_;
     if (fused) last_seen_ = std::max(last_seen_, sight->exposed);
@@ -171,6 +179,7 @@ void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
     height_checked_ = true;
     frames_since_landing_ = 0;
     mapper_ = perception::TerrainMapper(config_.perception, robot_);
+    volume_ = perception::OccupancyMemory(config_.perception.occupancy);
     mapper_.anchor_support(state_);
     events_.anchor = state_;
     map_ = std::make_shared<const core::TerrainMap>(mapper_.map());
@@ -242,18 +251,18 @@ void Pipeline::ask_where(const core::RobotState& state) {
   const auto jump = static_cast<std::size_t>(jumps_done_);
   if (!task.target && jump < mission_.targets.size()) task.target = mission_.targets[jump];
   events_.asked = &decision_.question();
-  decision_.question() = {map_, control_->rest_state(), task, for_operator_, ++plans_made_};
+  decision_.question() = {map_, hanging_, control_->rest_state(), task, for_operator_, ++plans_made_};
   decision_.ask(state.stamp);
 }
 
 /// On the planning stage's thread.
 void Pipeline::make_decision(const DecisionQuestion& question, Decision& decision) {
-  const auto& [map, rest, task, for_operator, plan_id] = question;
+  const auto& [map, hanging, rest, task, for_operator, plan_id] = question;
   const perception::OneStepConfig& one_step = config_.perception.one_step;
   decision.map = map;
   decision.terrain =
       perception::one_step_terrain(one_step, *map, perception::stance_pose(one_step, robot_, rest));
-  decision.choice = selector_.choose({*map, decision.terrain}, rest, task);
+  decision.choice = selector_.choose({*map, decision.terrain, *hanging}, rest, task);
   decision.plan.reset();
   if (!decision.choice.target) return;
   if (!for_operator) decision.choice.target->source = task.source;  // the next best is no wish
@@ -267,7 +276,7 @@ void Pipeline::make_decision(const DecisionQuestion& question, Decision& decisio
   for (const double share : {0.5, 0.0}) {
     if (*decision.plan || task.height_doubt == 0.0) return;
     bolder.height_doubt = share * task.height_doubt;
-    const core::TargetChoice again = selector_.choose({*map, decision.terrain}, rest, bolder);
+    const core::TargetChoice again = selector_.choose({*map, decision.terrain, *hanging}, rest, bolder);
     if (again.target) request.target.profile = again.target->profile;
     decision.plan = planner_.plan(request);
   }

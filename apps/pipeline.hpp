@@ -25,6 +25,7 @@
 #include "footstep/height_doubt.hpp"
 #include "footstep/landing_selector.hpp"
 #include "model/robot_parameters.hpp"
+#include "perception/occupancy.hpp"
 #include "perception/terrain_mapper.hpp"
 #include "planner/jump_planner.hpp"
 
@@ -67,9 +68,13 @@ struct PipelineEvents {
   std::size_t allocations = 0;  ///< By estimator and control tick: none is right.
 };
 
+/// Bottoms of what hangs over the ground, in W [m].
+using HangingThings = std::shared_ptr<const std::vector<Eigen::Vector3f>>;
+
 /// What a decision about the next jump is made from.
 struct DecisionView {
   core::TerrainMap map;
+  HangingThings hanging;
   core::OneStepTerrain terrain;  ///< Along the jump line of `rest`.
   core::RobotState rest;         ///< How the robot will stand.
 };
@@ -90,11 +95,13 @@ struct Sight {
   core::Stamp exposed;
   perception::MapStatus status = perception::MapStatus::blind;
   std::shared_ptr<const core::TerrainMap> map;  ///< With the frame in it.
+  HangingThings hanging;
 };
 
 /// From where and over what to jump next.
 struct DecisionQuestion {
   std::shared_ptr<const core::TerrainMap> map;
+  HangingThings hanging;
   core::RobotState rest;  ///< How the robot will stand.
   footstep::LandingTask task;
   bool for_operator = false;  ///< `task.target` is the operator's.
@@ -193,6 +200,7 @@ class Pipeline {
   core::JointCommand command_;
   StateHistory history_;
   perception::TerrainMapper mapper_;
+  perception::OccupancyMemory volume_;
   footstep::HeightDoubt doubt_;
   footstep::LandingSelector selector_;
   planner::JumpPlanner planner_;
@@ -200,6 +208,7 @@ class Pipeline {
   std::optional<control::ControlTick> control_;  // starts with the first state
 
   std::shared_ptr<const core::TerrainMap> map_;  ///< The newest that counts.
+  HangingThings hanging_ = std::make_shared<const std::vector<Eigen::Vector3f>>();
 
   core::Stamp last_mpc_;
   bool mpc_urgent_ = false;     ///< A phase began after the last question.

@@ -47,6 +47,7 @@ std::optional<DecisionView> Pipeline::decision_view() const {
   DecisionView view;
   view.rest = control_->rest_state();
   view.map = oracle_ ? oracle_(view.rest) : *map_;
+  view.hanging = hanging_;
   const perception::OneStepConfig& one_step = config_.perception.one_step;
   view.terrain = perception::one_step_terrain(one_step, view.map,
                                               perception::stance_pose(one_step, robot_, view.rest));

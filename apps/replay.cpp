@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "core/config_reader.hpp"
 #include "footstep/landing_selector.hpp"
 #include "msgs/run_log.hpp"
+#include "perception/occupancy.hpp"
 #include "perception/one_step.hpp"
 #include "perception/plane_segmentation.hpp"
 #include "perception/terrain_mapper.hpp"
@@ -37,23 +39,35 @@ struct Stages {
       : config(program),
         robot(hector),
         mapper(program.perception, hector),
+        volume(program.perception.occupancy),
         selector(program.footstep, hector) {}
 
-  TerrainReport look(const core::TerrainMap& map, const core::RobotState& rest,
-                     const footstep::LandingTask& task) const {
+  /// @param where  The robot's state at exposure, or the pose of a camera that no robot carries.
+  template <typename Where>
+  perception::MapStatus integrate(const core::DepthFrame& frame, const Where& where) {
+    const perception::MapStatus status = mapper.integrate(frame, where);
+    const bool fused = status == perception::MapStatus::fused;
+    if (fused && volume.insert(*mapper.image(), frame.stamp)) hanging = volume.hanging();
+    return status;
+  }
+
+  TerrainReport look(const core::TerrainMap& map, std::span<const Eigen::Vector3f> overhead,
+                     const core::RobotState& rest, const footstep::LandingTask& task) const {
     const perception::OneStepConfig& one_step = config.perception.one_step;
     const perception::StancePose stance = perception::stance_pose(one_step, robot, rest);
     TerrainReport report;
     report.terrain = perception::one_step_terrain(one_step, map, stance);
     report.survey = perception::survey_line(one_step, map, stance, kSurveyAhead);
     report.planes = planes_of(report.survey, stance.p_WS.z());
-    report.choice = selector.choose({map, report.terrain}, rest, task);
+    report.choice = selector.choose({map, report.terrain, overhead}, rest, task);
     return report;
   }
 
   const ProgramConfig& config;
   const model::RobotParameters& robot;
   perception::TerrainMapper mapper;
+  perception::OccupancyMemory volume;
+  std::vector<Eigen::Vector3f> hanging;
   footstep::LandingSelector selector;
 };
 
@@ -63,6 +77,12 @@ Eigen::Isometry3d camera_pose(const msgs::DepthRecord& record) {
   X_WB.translation() = record.at_exposure.p_WB;
   return X_WB * record.frame.X_BC;
 }
+
+/// What the robot knew of its surroundings.
+struct SeenThings {
+  core::TerrainMap map;
+  std::vector<Eigen::Vector3f> hanging;
+};
 
 /// Perception and target choice of a recorded run. Takes the messages of a log in their order.
 class LogReplay {
@@ -74,12 +94,13 @@ class LogReplay {
   void anchor(const msgs::AnchorRecord& record) {
     // Each anchor begins a map: at the start, and once more after a fall.
     stages_.mapper = perception::TerrainMapper(stages_.config.perception, stages_.robot);
+    stages_.volume = perception::OccupancyMemory(stages_.config.perception.occupancy);
     (void)stages_.mapper.anchor_support(record.state);
     remember_map();
   }
 
   void depth(const msgs::DepthRecord& record) {
-    status_ = stages_.mapper.integrate(record.frame, record.at_exposure);
+    status_ = stages_.integrate(record.frame, record.at_exposure);
     fused_ = fused_ || status_ == perception::MapStatus::fused;
     remember_map();
     newest_ = record.frame;
@@ -89,22 +110,22 @@ class LogReplay {
 
   void question(core::Stamp now, const msgs::TargetQuestion& asked) {
     finish_look();
-    const core::TerrainMap* map = map_of(asked.map_stamp);
-    if (map == nullptr) return;  // of the true terrain, or a log that lost its beginning
+    const SeenThings* const seen = seen_at(asked.map_stamp);
+    if (seen == nullptr) return;  // of the true terrain, or a log that lost its beginning
     const footstep::LandingTask task{.goal_x = asked.goal_x,
                                      .goal_heading = asked.goal_heading,
                                      .source = asked.source,
                                      .target = asked.target,
                                      .height_doubt = asked.height_doubt};
-    pending_.emplace(ReplayedLook{.report = stages_.look(*map, asked.rest, task),
-                                  .map = *map,
+    pending_.emplace(ReplayedLook{.report = stages_.look(seen->map, seen->hanging, asked.rest, task),
+                                  .map = seen->map,
                                   .frame = newest_ ? &*newest_ : nullptr,
                                   .X_WC = X_WC_});
     TerrainReport& report = pending_->report;
     core::TargetChoice& choice = report.choice;
     if (choice.target && !asked.for_operator) choice.target->source = task.source;
     report.stamp = now;
-    report.latency_ms = 1e3 * now.since(map->stamp);
+    report.latency_ms = 1e3 * now.since(seen->map.stamp);
     if (!fused_) report.status = newest_ ? std::string(map_status_name(status_)) : "no_frame";
     fused_ = false;
   }
@@ -134,17 +155,17 @@ class LogReplay {
   /// The stages work side by side: a decision is about a map some frames old.
   void remember_map() {
     constexpr std::size_t kMaps = 8;
-    maps_.push_back(stages_.mapper.map());
-    if (maps_.size() <= kMaps) return;
-    if (pending_ && &pending_->map == &maps_.front()) finish_look();
-    maps_.pop_front();
+    seen_.push_back({stages_.mapper.map(), stages_.hanging});
+    if (seen_.size() <= kMaps) return;
+    if (pending_ && &pending_->map == &seen_.front().map) finish_look();
+    seen_.pop_front();
   }
 
-  [[nodiscard]] const core::TerrainMap* map_of(core::Stamp stamp) const {
+  [[nodiscard]] const SeenThings* seen_at(core::Stamp stamp) const {
     const auto found =
-        std::find_if(maps_.rbegin(), maps_.rend(),
-                     [stamp](const core::TerrainMap& map) { return map.stamp == stamp; });
-    return found == maps_.rend() ? nullptr : &*found;
+        std::find_if(seen_.rbegin(), seen_.rend(),
+                     [stamp](const SeenThings& seen) { return seen.map.stamp == stamp; });
+    return found == seen_.rend() ? nullptr : &*found;
   }
 
   [[nodiscard]] const ReplaySummary& summary() const { return summary_; }
@@ -152,7 +173,7 @@ class LogReplay {
  private:
   Stages stages_;
   const LookObserver& observe_;
-  std::deque<core::TerrainMap> maps_;  ///< After each frame, the newest last.
+  std::deque<SeenThings> seen_;  ///< After each frame, the newest last.
   std::optional<ReplayedLook> pending_;
   std::optional<core::DepthFrame> newest_;
   Eigen::Isometry3d X_WC_ = Eigen::Isometry3d::Identity();
@@ -254,9 +275,9 @@ ReplaySummary replay_folder(const fs::path& folder, const DepthScaling& scaling,
     frame.stamp = poses[i].stamp;
     if (i == 0) X_WV = first_pose(images[0], frame, config) * poses[0].X_VC.inverse();
     const Eigen::Isometry3d X_WC = X_WV * poses[i].X_VC;
-    const perception::MapStatus status = stages.mapper.integrate(frame, X_WC);
+    const perception::MapStatus status = stages.integrate(frame, X_WC);
     const core::RobotState state = standing_at(config, robot, stance_below(X_WC));
-    ReplayedLook look{.report = stages.look(stages.mapper.map(), state, {}),
+    ReplayedLook look{.report = stages.look(stages.mapper.map(), stages.hanging, state, {}),
                       .map = stages.mapper.map(),
                       .frame = &frame,
                       .X_WC = X_WC};

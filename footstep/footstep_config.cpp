@@ -57,6 +57,8 @@ ReachConfig ReachConfig::load(const ConfigReader& section) {
   config.takeoff_edge_reserve = section.number("takeoff_edge_reserve_m", Range::not_negative());
   config.drop_min = section.number("drop_min_m", Range::not_negative());
   config.hurdle_max = section.number("hurdle_max_m", Range::not_negative());
+  config.head_room = section.number("head_room_m", Range::positive());
+  config.body_half_width = section.number("body_half_width_m", Range::positive());
   config.lateral_max = section.number("lateral_max_m", Range::not_negative());
   config.yaw_max = section.number("yaw_max_rad", Range::not_negative());
   section.finish();

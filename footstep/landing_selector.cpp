@@ -233,6 +233,20 @@ void choose_wanted(const StepRules& rules, const StanceOnMap& stance,
   choice.target->source = core::TargetSource::operator_override;
 }
 
+/// What hangs within the width of the body, in S.
+std::vector<Overhead> overhead_of(const SeenGround& ground, double half_width) {
+  const core::OneStepTerrain& terrain = ground.terrain;
+  const Eigen::Vector2d ahead(std::cos(terrain.heading), std::sin(terrain.heading));
+  std::vector<Overhead> overhead;
+  for (const Eigen::Vector3f& bottom : ground.hanging) {
+    const Eigen::Vector3d p_S_W = bottom.cast<double>() - terrain.p_WS;
+    const double y = ahead.x() * p_S_W.y() - ahead.y() * p_S_W.x();
+    if (std::abs(y) > half_width) continue;
+    overhead.push_back({.x = ahead.dot(p_S_W.head<2>()), .bottom = p_S_W.z()});
+  }
+  return overhead;
+}
+
 }  // namespace
 
 LandingSelector::LandingSelector(const FootstepConfig& config, const model::RobotParameters& robot)
@@ -250,8 +264,10 @@ TargetChoice LandingSelector::choose(const SeenGround& ground, const core::Robot
   core::TerrainProfile seen = ground.terrain.profile;
   put_underfoot(seen);
   const BoundedProfile profile = bound_profile(config_.profile, seen);
+  const std::vector<Overhead> overhead = overhead_of(ground, config_.reach.body_half_width);
   const StepRules rules{.config = config_,
                         .profile = profile,
+                        .overhead = overhead,
                         .height_doubt = task.height_doubt,
                         .half_length = stance.half_length,
                         .goal_x = goal_in_S(task, stance, config_.preference.goal_margin)};

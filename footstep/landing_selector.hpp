@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
+#include <span>
 
 #include "core/landing_target.hpp"
 #include "core/one_step_terrain.hpp"
@@ -16,6 +18,7 @@ namespace hopscotch::footstep {
 struct SeenGround {
   const core::TerrainMap& map;
   const core::OneStepTerrain& terrain;  ///< Cut from the map for the present stance.
+  std::span<const Eigen::Vector3f> hanging{};  ///< Bottoms of what hangs over it, in W [m].
 };
 
 /// Where the robot is to go.

@@ -60,6 +60,11 @@ std::string too_high(const FootstepConfig& config, const Foothold& place) {
                                     cm(std::max(0.0, place.height) + config.reach.hurdle_max);
 }
 
+std::string too_low(const FootstepConfig& config) {
+  return "something hangs over the way there, within " + cm(config.reach.head_room) +
+         " of the ground";
+}
+
 Refusal too_far(const FootstepConfig& config, const core::OneStepTerrain& terrain,
                 const Foothold& place) {
   const std::string reach =
@@ -95,6 +100,10 @@ Refusal nothing_to_stand_on(const FootstepConfig& config, const core::OneStepTer
 
 Refusal explain_refusal(const FootstepConfig& config, const core::OneStepTerrain& terrain,
                         const std::vector<JudgedFoothold>& judged) {
+  if (const auto place = first_unreached(judged, Reason::no_safe_target)) {
+    return {Reason::no_safe_target,
+            "the next safe place is " + cm(place->placement.x) + " away; " + too_low(config)};
+  }
   if (const auto place = first_unreached(judged, Reason::step_too_high)) {
     return {Reason::step_too_high, "the next safe place is " + cm(place->placement.x) + " away; " +
                                        too_high(config, *place)};
@@ -138,6 +147,7 @@ Refusal explain_place(const FootstepConfig& config, const JudgedFoothold& judged
     }
     case Reason::tread_too_short:
     case Reason::no_safe_target:
+      if (place.why == Reason::none) return {judged.why, where + ": " + too_low(config)};
       if (place.supported) {
         return {judged.why, where + " toe and heel are " + cm(place.toe_margin) + " and " +
                                 cm(place.heel_margin) + " from edges; " +

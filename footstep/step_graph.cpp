@@ -66,6 +66,17 @@ double unknown_cost(const StepRules& rules, const Takeoff& from) {
   return config.preference.dead_end_cost;
 }
 
+/// Whether the trunk would meet something that hangs. What is about as high as the ground belongs
+/// to it.
+bool is_blocked(const StepRules& rules, double ground, double from_x, double to_x) {
+  constexpr double kGround = 0.15;  // [m]
+  return std::any_of(rules.overhead.begin(), rules.overhead.end(), [&](const Overhead& thing) {
+    const double above = thing.bottom - ground;
+    return thing.x > from_x && thing.x < to_x && above > kGround &&
+           above < rules.config.reach.head_room;
+  });
+}
+
 }  // namespace
 
 Takeoff takeoff_from(const Foothold& foothold, double half_length) {
@@ -83,7 +94,9 @@ Reason step_verdict(const StepRules& rules, const Takeoff& from, const Foothold&
   const double start = from.x + rules.half_length;
   const double end = to.placement.x + rules.half_length;
   if (!rules.profile.is_bounded(start, end)) return Reason::terrain_unseen;
-  const double allowed = std::max(from.height, to.height) + rules.config.reach.hurdle_max;
+  const double ground = std::max(from.height, to.height);
+  if (is_blocked(rules, ground, from.x, end)) return Reason::no_safe_target;
+  const double allowed = ground + rules.config.reach.hurdle_max;
   return rules.profile.highest(start, end) > allowed ? Reason::step_too_high : Reason::none;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/reason.hpp"
@@ -10,10 +11,17 @@
 
 namespace hopscotch::footstep {
 
+/// Something that hangs over the jump line, in S.
+struct Overhead {
+  double x = 0.0;       ///< [m]
+  double bottom = 0.0;  ///< [m]
+};
+
 /// What the terrain and the task ask of each jump along the line.
 struct StepRules {
   const FootstepConfig& config;
   const BoundedProfile& profile;
+  std::span<const Overhead> overhead{};
   double height_doubt = 0.0;                                ///< Of what is flown over [m].
   double half_length = 0.0;                                 ///< Of a sole [m].
   double goal_x = std::numeric_limits<double>::infinity();  ///< Mid-point of the soles, in S [m].
@@ -29,7 +37,8 @@ struct Takeoff {
 [[nodiscard]] Takeoff takeoff_from(const Foothold& foothold, double half_length);
 
 /// Whether one jump along the line can be made: `none`, or the reason of the reach table, or
-/// terrain_unseen when it leads over unbounded ground, or step_too_high over a hurdle.
+/// terrain_unseen when it leads over unbounded ground, step_too_high over a hurdle, or
+/// no_safe_target below something that hangs too low.
 [[nodiscard]] core::Reason step_verdict(const StepRules& rules, const Takeoff& from,
                                         const Foothold& to);
 

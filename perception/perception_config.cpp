@@ -70,12 +70,30 @@ OneStepConfig OneStepConfig::load(const ConfigReader& section) {
   return config;
 }
 
+OccupancyConfig OccupancyConfig::load(const ConfigReader& section) {
+  OccupancyConfig config;
+  config.voxel = section.number("voxel_m", Range::closed(0.01, 0.2));
+  config.pixel_step = section.integer("pixel_step", 1, 64);
+  config.period = section.number("period_s", Range::closed(0.0, 10.0));
+  config.reach = section.number("reach_m", Range::positive());
+  config.half_height = section.number("half_height_m", Range::positive());
+  config.hit = section.number("hit", Range::closed(0.5, 0.99));
+  config.miss = section.number("miss", Range::closed(0.01, 0.5));
+  config.occupied = section.number("occupied", Range::closed(0.5, 0.99));
+  config.clamp_low = section.number("clamp_low", Range::closed(0.01, 0.5));
+  config.clamp_high = section.number("clamp_high", Range::closed(config.occupied, 0.99));
+  config.nodes_max = section.integer("nodes_max", 1000, 10'000'000);
+  section.finish();
+  return config;
+}
+
 PerceptionConfig PerceptionConfig::load(const ConfigReader& section) {
   PerceptionConfig config;
   config.noise = DepthNoiseConfig::load(section.section("noise"));
   config.filter = DepthFilterConfig::load(section.section("depth_filter"));
   config.mapper = MapperConfig::load(section.section("mapper"));
   config.one_step = OneStepConfig::load(section.section("one_step"));
+  config.occupancy = OccupancyConfig::load(section.section("occupancy"));
   config.planes = PlaneConfig::load(section.section("planes"));
   config.calibration = CalibrationConfig::load(section.section("calibration"));
   section.finish();

@@ -69,12 +69,30 @@ struct OneStepConfig {
   static OneStepConfig load(const core::ConfigReader& section);
 };
 
+/// The volumetric memory; section `perception.occupancy`.
+struct OccupancyConfig {
+  double voxel = 0.0;        ///< Edge of a voxel [m].
+  int pixel_step = 1;        ///< Every so many pixels, in both directions, are used.
+  double period = 0.0;       ///< Between frames that are taken in [s].
+  double reach = 0.0;        ///< Remembered to so far from the camera along x and y of W [m].
+  double half_height = 0.0;  ///< And above and below it [m].
+  double hit = 0.0;          ///< Probability of an occupied voxel where a ray ends.
+  double miss = 0.0;         ///< The same where a ray passes.
+  double occupied = 0.0;     ///< From this probability on a voxel counts as occupied.
+  double clamp_low = 0.0;    ///< Probabilities stay above.
+  double clamp_high = 0.0;   ///< And below, so that a few rays clear what has moved.
+  int nodes_max = 0;         ///< Of the tree, before what is far away is dropped.
+
+  static OccupancyConfig load(const core::ConfigReader& section);
+};
+
 /// Section `perception` of the configuration.
 struct PerceptionConfig {
   DepthNoiseConfig noise;
   DepthFilterConfig filter;
   MapperConfig mapper;
   OneStepConfig one_step;
+  OccupancyConfig occupancy;
   PlaneConfig planes;
   CalibrationConfig calibration;
 

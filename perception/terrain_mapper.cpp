@@ -25,6 +25,8 @@ struct TerrainMapper::Memory {
   PointBins bins;
   std::vector<float> depth;
   std::vector<CellUnderRay> under_ray;
+  core::CameraIntrinsics lens;
+  std::optional<PlacedDepth> image;
 };
 
 namespace {
@@ -231,7 +233,9 @@ MapStatus TerrainMapper::fuse(const core::DepthFrame& frame, const BodyCapsules&
                              .column_step = steps.column,
                              .near_row_step = steps.near_row,
                              .hidden_length = kHiddenCells * config_.mapper.resolution};
-  const PlacedDepth image{frame.intrinsics, memory_->depth, X_WC};
+  memory_->lens = frame.intrinsics;
+  memory_->image.emplace(PlacedDepth{memory_->lens, memory_->depth, X_WC});
+  const PlacedDepth& image = *memory_->image;
   memory_->bins.fill(image, map, limits);
   fuse_points(config_, image, memory_->bins, memory_->window);
   fuse_sight_lines(config_.mapper, X_WC.translation(), memory_->bins, memory_->under_ray,
@@ -248,6 +252,10 @@ MapStatus TerrainMapper::anchor_support(const core::RobotState& state) {
     fuse_sole(config_.mapper, robot_, X_WF, memory_->window);
   }
   return MapStatus::fused;
+}
+
+const std::optional<PlacedDepth>& TerrainMapper::image() const {
+  return memory_->image;
 }
 
 const core::TerrainMap& TerrainMapper::map() const {

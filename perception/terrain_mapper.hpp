@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "core/depth_frame.hpp"
@@ -10,6 +11,7 @@
 #include "model/robot_parameters.hpp"
 #include "perception/body_mask.hpp"
 #include "perception/perception_config.hpp"
+#include "perception/point_bins.hpp"
 
 namespace hopscotch::perception {
 
@@ -59,6 +61,10 @@ class TerrainMapper {
   MapStatus anchor_support(const core::RobotState& state);
 
   [[nodiscard]] const core::TerrainMap& map() const;
+
+  /// The newest fused frame without lost, doubtful and the body's own pixels; empty before it.
+  /// Refers to this object.
+  [[nodiscard]] const std::optional<PlacedDepth>& image() const;
 
  private:
   struct Memory;

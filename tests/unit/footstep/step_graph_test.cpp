@@ -62,6 +62,21 @@ TEST_F(StepGraphTest, HurdleOnTheWayForbidsTheJump) {
       << "it is allowed to stand out that much above the landing";
 }
 
+TEST_F(StepGraphTest, ThingThatHangsTooLowForbidsTheJumpBelowIt) {
+  const auto verdict_below = [&](double x, double bottom, double landing_height) {
+    const Overhead thing{.x = x, .bottom = bottom};
+    StepRules below = rules();
+    below.overhead = {&thing, 1};
+    return step_verdict(below, here_, safe_place(0.4, landing_height));
+  };
+  EXPECT_EQ(verdict_below(0.25, 0.50, 0.0), Reason::no_safe_target);
+  EXPECT_EQ(verdict_below(0.25, config_.reach.head_room + 0.01, 0.0), Reason::none);
+  EXPECT_EQ(verdict_below(0.25, config_.reach.head_room + 0.01, 0.10), Reason::no_safe_target)
+      << "room is needed over the higher ground";
+  EXPECT_EQ(verdict_below(0.60, 0.50, 0.0), Reason::none) << "it hangs behind the landing";
+  EXPECT_EQ(verdict_below(0.25, 0.02, 0.0), Reason::none) << "an edge of the ground";
+}
+
 TEST_F(StepGraphTest, EdgesCostWhatTheirMarginLacks) {
   Foothold near_edge = safe_place(0.4);
   near_edge.toe_margin = config_.preference.margin_wanted - 0.02;
