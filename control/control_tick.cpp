@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "control/torque_law.hpp"
 #include "model/gravity.hpp"
@@ -39,6 +40,12 @@ Eigen::Vector3d mid_sole_laid(const model::RobotParameters& robot,
   return middle;
 }
 
+/// Where both soles point, on the mean [rad].
+double heading_of(const std::array<Eigen::Isometry3d, core::kLegs>& X_WF) {
+  const Eigen::Vector3d ahead = X_WF[0].linear().col(0) + X_WF[1].linear().col(0);
+  return std::atan2(ahead.y(), ahead.x());
+}
+
 std::array<Eigen::Vector3d, core::kLegs> centres(
     const std::array<Eigen::Isometry3d, core::kLegs>& X_WF) {
   return {X_WF[0].translation(), X_WF[1].translation()};
@@ -47,6 +54,14 @@ std::array<Eigen::Vector3d, core::kLegs> centres(
 /// Mid-point of the soles of a knot as planned.
 Eigen::Vector3d planned_mid_sole(const model::RobotParameters& robot, const core::JumpKnot& knot) {
   return mid_sole(model::sole_poses(robot, model::state_of(knot)));
+}
+
+double planned_heading(const model::RobotParameters& robot, const core::JumpKnot& knot) {
+  return heading_of(model::sole_poses(robot, model::state_of(knot)));
+}
+
+double wrapped(double angle) {
+  return std::remainder(angle, 2.0 * std::numbers::pi);
 }
 
 /// The state `delay` later [s], its rates changing as the plan's do: what acts until then has been
@@ -136,12 +151,17 @@ void ControlTick::offer(const core::JumpPlan& plan) noexcept {
 }
 
 void ControlTick::begin_next(const core::RobotState& state) noexcept {
+  const double before = planned_heading(robot_, plan_.knots[plan_.knot_count - 1]);
   plan_ = next_;
   has_next_ = false;
   start_ = state.stamp;
   const auto soles = model::sole_poses(robot_, state);
-  placement_.takeoff = {mid_sole(soles) - planned_mid_sole(robot_, plan_.knots[0]), centres(soles)};
+  // What the last landing turned too far is turned back, so that headings do not add up.
+  const double turned = wrapped(planned_heading(robot_, plan_.knots[0]) - before);
+  placement_.takeoff = {mid_sole(soles) - planned_mid_sole(robot_, plan_.knots[0]),
+                        placement_.takeoff.turn - turned, centres(soles)};
   placement_.landing.shift = placement_.takeoff.shift;
+  placement_.landing.turn = 0.0;
   for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
     placement_.landing.soles[leg] = plan_.target.X_WF[leg].translation() + placement_.landing.shift;
   }
@@ -152,7 +172,8 @@ void ControlTick::begin_next(const core::RobotState& state) noexcept {
 void ControlTick::settle(const core::RobotState& state, double duration) noexcept {
   make_settle_plan(robot_, state, stand_, duration, plan_);
   start_ = state.stamp;
-  placement_.takeoff = placement_.landing = {Eigen::Vector3d::Zero(), centres(plan_.target.X_WF)};
+  placement_.takeoff =
+      placement_.landing = {Eigen::Vector3d::Zero(), 0.0, centres(plan_.target.X_WF)};
   touchdown_ = state.stamp;
 }
 
@@ -184,16 +205,18 @@ bool ControlTick::clear_fault() noexcept {
 void ControlTick::follow_feet(const core::RobotState& state) noexcept {
   if (state.stamp.since(touchdown_) > config_.anchor_time) return;
   const auto soles = model::sole_poses(robot_, state);
-  placement_.landing = {
-      mid_sole_laid(robot_, soles) - planned_mid_sole(robot_, plan_.knots[plan_.knot_count - 1]),
-      centres(soles)};
+  const core::JumpKnot& last = plan_.knots[plan_.knot_count - 1];
+  placement_.landing = {mid_sole_laid(robot_, soles) - planned_mid_sole(robot_, last),
+                        wrapped(heading_of(soles) - planned_heading(robot_, last)), centres(soles)};
 }
 
 core::RobotState ControlTick::rest_state() const noexcept {
   const core::JumpKnot& last = plan_.knots[plan_.knot_count - 1];
+  const Eigen::Vector3d middle = planned_mid_sole(robot_, last);
+  const Eigen::AngleAxisd turn(placement_.landing.turn, Eigen::Vector3d::UnitZ());
   core::RobotState rest = state_;
-  rest.p_WB = last.p_WB + placement_.landing.shift;
-  rest.R_WB = model::rotation_from_rpy(last.rpy);
+  rest.p_WB = middle + turn * (last.p_WB - middle) + placement_.landing.shift;
+  rest.R_WB = turn * model::rotation_from_rpy(last.rpy);
   rest.v_WB.setZero();
   rest.w_WB.setZero();
   rest.q = last.q;
@@ -255,8 +278,8 @@ void ControlTick::hop_if_it_must(const core::RobotState& state) noexcept {
   has_next_ = false;
   plan_ = hop_plan_;
   start_ = state.stamp;
-  placement_.takeoff = {Eigen::Vector3d::Zero(), centres(model::sole_poses(robot_, state))};
-  placement_.landing = {Eigen::Vector3d::Zero(), centres(plan_.target.X_WF)};
+  placement_.takeoff = {Eigen::Vector3d::Zero(), 0.0, centres(model::sole_poses(robot_, state))};
+  placement_.landing = {Eigen::Vector3d::Zero(), 0.0, centres(plan_.target.X_WF)};
 }
 
 void ControlTick::observe_drives(const core::SensorReadings& readings) noexcept {

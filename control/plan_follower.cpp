@@ -113,6 +113,23 @@ double step_length(const core::JumpPlan& plan, double time) {
   return dt;
 }
 
+/// What a jump turns beyond its plan by a time of the plan: the yaw rate grows over the end of the
+/// takeoff, stays in the air and is gone with the touchdown.
+struct Turning {
+  double angle = 0.0;  // [rad]
+  double rate = 0.0;   // [rad/s]
+};
+
+Turning turning_at(const core::JumpPlan& plan, double time, double turn) {
+  constexpr double kPush = 0.15;  // before lift-off [s]
+  constexpr double kMost = 0.03;  // in one jump [rad]
+  const double in_air = plan.touchdown_time - plan.liftoff_time;
+  const double pushed = std::clamp(time - plan.liftoff_time + kPush, 0.0, kPush);
+  const double flown = std::clamp(time - plan.liftoff_time, 0.0, in_air);
+  const double rate = std::clamp(turn, -kMost, kMost) / (in_air + 0.5 * kPush);
+  return {rate * (0.5 * pushed * pushed / kPush + flown), rate * pushed / kPush};
+}
+
 /// One knot of the window and the step that begins there.
 void fill_knot(const core::JumpPlan& plan, double t, double dt, const PlanPlacement& placement,
                core::ReferenceKnot& knot) {
@@ -126,6 +143,9 @@ void fill_knot(const core::JumpPlan& plan, double t, double dt, const PlanPlacem
   knot.rpy = state.rpy;
   knot.v_WG = state.v_WG;
   knot.w_WB = state.w_WB;
+  const Turning turning = landed ? Turning{side.turn, 0.0} : turning_at(plan, t, side.turn);
+  knot.rpy.z() += turning.angle;
+  knot.w_WB.z() += turning.rate;
   knot.p_WF = side.soles;
   knot.wrenches = step.wrenches;
 }

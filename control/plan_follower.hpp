@@ -16,11 +16,12 @@ namespace hopscotch::control {
 /// The last knot at or before `time`. Real-time safe.
 [[nodiscard]] std::size_t knot_index(const core::JumpPlan& plan, double time) noexcept;
 
-/// How the plan is laid over what really happened: what is added to planned positions, and where
-/// the soles are, before touchdown and after it, all in W [m].
+/// How the plan is laid over what really happened, before touchdown and after it: what is added to
+/// planned positions [m], how far to turn beside the plan [rad], where the soles are, in W [m].
 struct PlanPlacement {
   struct Side {
     Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+    double turn = 0.0;
     std::array<Eigen::Vector3d, core::kLegs> soles{Eigen::Vector3d::Zero(),
                                                    Eigen::Vector3d::Zero()};
   };

@@ -107,7 +107,10 @@ double step_cost(const StepRules& rules, const Takeoff& from, const Foothold& to
   // The last jump may be short: what counts is to stop right behind the goal.
   const double distance_cost =
       overshoot >= 0.0 ? std::max(0.0, off_nominal) + overshoot : std::abs(off_nominal);
-  const double short_margin = std::max(0.0, preference.margin_wanted - to.margin());
+  // Ground that lies higher or lower than it seems is met earlier or later, and moves the landing
+  // by about as much.
+  const double margin_wanted = preference.margin_wanted + rules.height_doubt;
+  const double short_margin = std::max(0.0, margin_wanted - to.margin());
   return preference.step_cost + distance_cost + preference.margin_weight * short_margin;
 }
 

@@ -127,6 +127,33 @@ TEST_F(ControlTickTest, LandingFollowsTheFeetAndRestIsThere) {
   EXPECT_NEAR((rest_mid - mid).norm(), 0.0, 1e-9);
 }
 
+TEST_F(ControlTickTest, TheRestAndTheMpcsHeadingAreThoseOfTheSoles) {
+  constexpr double kTurn = 0.15;
+  ControlTick control = standing();
+  step(control);
+  control.offer(plan_);
+  run_to(control, RobotPhase::flight);
+  for (int i = 0; i < 60; ++i) step(control);
+  state_.R_WB = model::rotation_from_rpy({0.0, 0.0, kTurn});
+  state_.contact = {true, true};
+  for (int i = 0; i < 200; ++i) step(control);
+  const core::RobotState rest = control.rest_state();
+  const auto rest_soles = model::sole_poses(robot_, rest);
+  const auto soles = model::sole_poses(robot_, state_);
+  const Eigen::Vector3d rest_ahead = rest_soles[0].linear().col(0) + rest_soles[1].linear().col(0);
+  const Eigen::Vector3d ahead = soles[0].linear().col(0) + soles[1].linear().col(0);
+  EXPECT_NEAR(std::atan2(rest_ahead.y(), rest_ahead.x()), std::atan2(ahead.y(), ahead.x()), 1e-9);
+  EXPECT_NEAR(model::rpy_from_rotation(rest.R_WB).z(), kTurn, 0.005);
+  for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
+    EXPECT_NEAR((rest_soles[leg].translation() - soles[leg].translation()).head<2>().norm(), 0.0,
+                1e-3);
+  }
+  MpcQuestion question;
+  question.reference.horizon = 5;
+  control.question(question);
+  EXPECT_NEAR(question.reference.knots[5].rpy.z(), kTurn, 0.005);
+}
+
 TEST_F(ControlTickTest, FlightKeepsTheFeetLevelWhenTheTrunkTurns) {
   ControlTick control = standing();
   step(control);

@@ -105,6 +105,29 @@ TEST(PlanFollower, LandingIsShiftedByItsOwnAnchorAndSoles) {
   EXPECT_DOUBLE_EQ(reference.knots[2].p_WF[0].x(), 0.4);
 }
 
+TEST(PlanFollower, AJumpTurnsBesideItsPlanFromTheEndOfTheTakeoffOn) {
+  core::ControlReference straight = window(0.0, 14);
+  core::ControlReference turned = straight;
+  PlanPlacement beside = placement();
+  beside.takeoff.turn = 0.02;
+  beside.landing.turn = 0.017;
+  fill_reference(kPlan, 0.0, beside, turned);
+  const auto extra = [&](std::size_t k) {
+    return turned.knots[k].rpy.z() - straight.knots[k].rpy.z();
+  };
+  EXPECT_DOUBLE_EQ(extra(2), 0.0);            // at 0.04 s
+  EXPECT_GT(turned.knots[10].w_WB.z(), 0.1);  // lift-off
+  for (std::size_t k = 10; k < 13; ++k) {
+    EXPECT_NEAR(extra(k + 1) - extra(k), turned.knots[k].dt * turned.knots[k].w_WB.z(), 1e-9);
+  }
+  EXPECT_NEAR(extra(13) + turned.knots[13].dt * turned.knots[13].w_WB.z(), 0.02, 1e-9);
+  EXPECT_DOUBLE_EQ(extra(14), 0.017);  // touchdown: where the soles point
+  EXPECT_DOUBLE_EQ(turned.knots[14].w_WB.z(), straight.knots[14].w_WB.z());
+  beside.takeoff.turn = -1.0;
+  fill_reference(kPlan, 0.0, beside, turned);
+  EXPECT_NEAR(extra(13) + turned.knots[13].dt * turned.knots[13].w_WB.z(), -0.03, 1e-9);
+}
+
 TEST(PlanFollower, PastItsEndThePlanIsHeld) {
   const core::ControlReference reference = window(0.5, 5);
   for (std::size_t k = 0; k <= reference.horizon; ++k) {

@@ -71,17 +71,18 @@ TEST(PutUnderfoot, UnseenGroundStaysAsItIs) {
   EXPECT_DOUBLE_EQ(profile.mean[at(0.1)], 0.03);
 }
 
-TEST(HeightDoubt, TheSelectorRaisesWhatIsFlownOverAndNothingElse) {
+TEST(HeightDoubt, TheSelectorRaisesWhatIsFlownOverAndLandsInTheMiddle) {
   const test::KnownCourse course(
       {.blocks = {{-1.0, 0.20, 0.0}, {0.25, 0.60, 0.0}, {0.65, 3.0, 0.0}}});
   const core::TargetChoice sure = course.choose();
   const core::TargetChoice unsure = course.choose({.height_doubt = 0.04});
   ASSERT_TRUE(sure.target && unsure.target);
-  EXPECT_DOUBLE_EQ(sure.target->distance, unsure.target->distance);
+  EXPECT_DOUBLE_EQ(sure.target->distance, 0.40);
+  EXPECT_NEAR(unsure.target->distance, 0.425, 0.01);  // the second block's middle
   const auto raised = [&](double x) {
     return unsure.target->profile.upper[at(x)] - sure.target->profile.upper[at(x)];
   };
-  const double target = sure.target->distance;
+  const double target = unsure.target->distance;
   EXPECT_DOUBLE_EQ(raised(0.0), 0.0);
   EXPECT_NEAR(raised(0.27), 0.04, 1e-12);
   EXPECT_DOUBLE_EQ(raised(target - 0.075), 0.0);

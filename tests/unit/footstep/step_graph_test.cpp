@@ -49,6 +49,17 @@ TEST_F(StepGraphTest, NominalJumpIsAllowedAndCheapest) {
   EXPECT_GT(step_cost(rules(), here_, safe_place(nominal + 0.05)), best);
 }
 
+TEST_F(StepGraphTest, DoubtAboutTheHeightAsksForMoreRoomBesideTheSoles) {
+  Foothold central = safe_place(config_.preference.nominal_distance - 0.04);
+  Foothold near_edge = safe_place(config_.preference.nominal_distance);
+  central.toe_margin = config_.preference.margin_wanted + 0.04;
+  near_edge.toe_margin = config_.preference.margin_wanted;
+  EXPECT_LT(step_cost(rules(), here_, near_edge), step_cost(rules(), here_, central));
+  StepRules doubtful = rules();
+  doubtful.height_doubt = 0.04;
+  EXPECT_GT(step_cost(doubtful, here_, near_edge), step_cost(doubtful, here_, central));
+}
+
 TEST_F(StepGraphTest, UnboundedGroundOnTheWayForbidsTheJump) {
   profile_.bounded[static_cast<std::size_t>(core::TerrainProfile::sample(0.25))] = false;
   EXPECT_EQ(step_verdict(rules(), here_, safe_place(0.4)), Reason::terrain_unseen);
