@@ -36,10 +36,23 @@ RawRun read(const RunFolder& folder) {
   return raw;
 }
 
+/// Last status of the last jump's own plan. A recovery hop, which has none, belongs to the jump
+/// that it follows.
+std::size_t last_of_plan(const std::vector<msgs::Status>& status) {
+  std::size_t last = status.size() - 1;
+  const auto hops = [&](const core::ControlStatus& control) {
+    const bool stands =
+        control.phase == core::RobotPhase::stand || control.phase == core::RobotPhase::hold;
+    return control.plan_id == 0 && !stands;
+  };
+  while (last > 0 && hops(status[last].control)) --last;
+  return status[last].control.plan_id != 0 ? last : status.size() - 1;
+}
+
 /// First status of the last attempt: of the plan that was followed last, or of the last seconds.
 std::size_t first_of_attempt(const std::vector<msgs::Status>& status) {
-  const auto& last = status.back().control;
-  std::size_t first = status.size() - 1;
+  std::size_t first = last_of_plan(status);
+  const auto& last = status[first].control;
   const bool jumped = last.plan_id != 0;
   while (first > 0) {
     const auto& before = status[first - 1].control;
@@ -104,7 +117,7 @@ Evidence collect_evidence(const RunFolder& folder) {
   for (std::size_t i = first_of_attempt(raw.status); i < raw.status.size(); ++i) {
     evidence.samples.push_back(sample_of(raw, raw.status[i], evidence.robot));
   }
-  const auto plan = raw.plans.find(raw.status.back().control.plan_id);
+  const auto plan = raw.plans.find(raw.status[last_of_plan(raw.status)].control.plan_id);
   if (plan != raw.plans.end()) evidence.plan = plan->second;
   return evidence;
 }

@@ -251,7 +251,8 @@ void Pipeline::ask_where(const core::RobotState& state) {
   const auto jump = static_cast<std::size_t>(jumps_done_);
   if (!task.target && jump < mission_.targets.size()) task.target = mission_.targets[jump];
   events_.asked = &decision_.question();
-  decision_.question() = {map_, hanging_, control_->rest_state(), task, for_operator_, ++plans_made_};
+  decision_.question() = {map_, hanging_,      control_->rest_state(),
+                          task, for_operator_, ++plans_made_};
   decision_.ask(state.stamp);
 }
 
@@ -276,7 +277,8 @@ void Pipeline::make_decision(const DecisionQuestion& question, Decision& decisio
   for (const double share : {0.5, 0.0}) {
     if (*decision.plan || task.height_doubt == 0.0) return;
     bolder.height_doubt = share * task.height_doubt;
-    const core::TargetChoice again = selector_.choose({*map, decision.terrain, *hanging}, rest, bolder);
+    const core::TargetChoice again =
+        selector_.choose({*map, decision.terrain, *hanging}, rest, bolder);
     if (again.target) request.target.profile = again.target->profile;
     decision.plan = planner_.plan(request);
   }

@@ -108,7 +108,8 @@ std::string ProposalDesk::propose(const std::string& request) {
   json["yaw"] = number(target.yaw);
   footstep::LandingTask task;
   task.target = target;
-  const core::TargetChoice choice = selector_.choose({view->map, view->terrain, *view->hanging}, view->rest, task);
+  const core::TargetChoice choice =
+      selector_.choose({view->map, view->terrain, *view->hanging}, view->rest, task);
   if (!choice.target) {
     json["reason"] = choice.refusal.text();
     return json.dump();

@@ -117,10 +117,11 @@ class LogReplay {
                                      .source = asked.source,
                                      .target = asked.target,
                                      .height_doubt = asked.height_doubt};
-    pending_.emplace(ReplayedLook{.report = stages_.look(seen->map, seen->hanging, asked.rest, task),
-                                  .map = seen->map,
-                                  .frame = newest_ ? &*newest_ : nullptr,
-                                  .X_WC = X_WC_});
+    pending_.emplace(
+        ReplayedLook{.report = stages_.look(seen->map, seen->hanging, asked.rest, task),
+                     .map = seen->map,
+                     .frame = newest_ ? &*newest_ : nullptr,
+                     .X_WC = X_WC_});
     TerrainReport& report = pending_->report;
     core::TargetChoice& choice = report.choice;
     if (choice.target && !asked.for_operator) choice.target->source = task.source;
@@ -162,9 +163,9 @@ class LogReplay {
   }
 
   [[nodiscard]] const SeenThings* seen_at(core::Stamp stamp) const {
-    const auto found =
-        std::find_if(seen_.rbegin(), seen_.rend(),
-                     [stamp](const SeenThings& seen) { return seen.map.stamp == stamp; });
+    const auto found = std::find_if(seen_.rbegin(), seen_.rend(), [stamp](const SeenThings& seen) {
+      return seen.map.stamp == stamp;
+    });
     return found == seen_.rend() ? nullptr : &*found;
   }
 

@@ -37,11 +37,11 @@ struct ReachConfig {
   std::vector<double> past_edge_min;
   double takeoff_edge_reserve = 0.0;  ///< Kept for landings that fall short, thinking ahead [m].
   double drop_min = 0.0;              ///< Smaller drops ask nothing of the takeoff edge [m].
-  double hurdle_max = 0.0;   ///< What may stick out above takeoff and landing on the way [m].
-  double head_room = 0.0;    ///< Nothing may hang lower above takeoff and landing ... [m]
+  double hurdle_max = 0.0;       ///< What may stick out above takeoff and landing on the way [m].
+  double head_room = 0.0;        ///< Nothing may hang lower above takeoff and landing ... [m]
   double body_half_width = 0.0;  ///< ... than so, within this of the jump line [m].
-  double lateral_max = 0.0;  ///< Sideways, for the operator's targets [m].
-  double yaw_max = 0.0;      ///< Turn, for the operator's targets [rad].
+  double lateral_max = 0.0;      ///< Sideways, for the operator's targets [m].
+  double yaw_max = 0.0;          ///< Turn, for the operator's targets [rad].
 
   static ReachConfig load(const core::ConfigReader& section);
 };

@@ -17,7 +17,7 @@ namespace hopscotch::footstep {
 /// What is known of the ground.
 struct SeenGround {
   const core::TerrainMap& map;
-  const core::OneStepTerrain& terrain;  ///< Cut from the map for the present stance.
+  const core::OneStepTerrain& terrain;         ///< Cut from the map for the present stance.
   std::span<const Eigen::Vector3f> hanging{};  ///< Bottoms of what hangs over it, in W [m].
 };
 

@@ -10,7 +10,8 @@ namespace {
 constexpr const char* kReach =
     "distance_min_m: [0.1, 0.1]\ndistance_max_m: [0.5, 0.5]\ntakeoff_edge_max_m: [1.0, 1.0]\n"
     "past_edge_min_m: [0.1, 0.1]\n"
-    "takeoff_edge_reserve_m: 0.0\ndrop_min_m: 0.06\nhurdle_max_m: 0.08\nhead_room_m: 0.85\nbody_half_width_m: 0.15\nlateral_max_m: "
+    "takeoff_edge_reserve_m: 0.0\ndrop_min_m: 0.06\nhurdle_max_m: 0.08\nhead_room_m: "
+    "0.85\nbody_half_width_m: 0.15\nlateral_max_m: "
     "0.05\nyaw_max_rad: 0.15\n";
 
 TEST(FootstepConfig, ProjectTuningLoadsCompletely) {

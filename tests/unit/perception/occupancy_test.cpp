@@ -37,10 +37,10 @@ class View {
     const core::CameraIntrinsics& lens = frame_.intrinsics;
     for (int v = 0; v < lens.height; ++v) {
       for (int u = 0; u < lens.width; ++u) {
-        const Eigen::Vector3d ray = X_WC_.linear() * Eigen::Vector3d((u - lens.cx) / lens.fx,
-                                                                     (v - lens.cy) / lens.fy, 1.0);
-        const double depth = test::hit_box({0.6, -1.0, kBeamBottom}, {0.7, 1.0, 0.8},
-                                           X_WC_.translation(), ray);
+        const Eigen::Vector3d ray =
+            X_WC_.linear() * Eigen::Vector3d((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1.0);
+        const double depth =
+            test::hit_box({0.6, -1.0, kBeamBottom}, {0.7, 1.0, 0.8}, X_WC_.translation(), ray);
         float& z = frame_.depth[static_cast<std::size_t>(v * lens.width + u)];
         if (depth < 3.0 && (z == 0.0F || depth < static_cast<double>(z))) {
           z = static_cast<float>(depth);
