@@ -48,9 +48,9 @@ SolvedMotion CorrectedSolver::solve(const PlanarModel& model, const PlanarTask& 
   ChainProblem problem(model, task, layout_);
   correction_.clear();
   problem.correct(correction_);
-  return corrected(
-      model, task, problem,
-      chain_.solve(problem, start, {model.config.iterations_max, model.config.tolerance}));
+  const SolveOptions options{std::min(allowed_, model.config.iterations_max),
+                             model.config.tolerance};
+  return corrected(model, task, problem, chain_.solve(problem, start, options));
 }
 
 SolvedMotion CorrectedSolver::solve_near(const PlanarModel& model, const PlanarTask& task,
@@ -59,7 +59,7 @@ SolvedMotion CorrectedSolver::solve_near(const PlanarModel& model, const PlanarT
   correction_.clear_bounds();
   correction_.steps = neighbour.correction;
   problem.correct(correction_);
-  const SolveOptions options{std::min(kWarmIterationsMax, model.config.iterations_max),
+  const SolveOptions options{std::min({allowed_, kWarmIterationsMax, model.config.iterations_max}),
                              model.config.tolerance};
   return corrected(model, task, problem, chain_.solve_near(problem, neighbour.solution, options));
 }
@@ -96,7 +96,8 @@ void CorrectedSolver::refine(const PlanarModel& model, const PlanarTask& task,
   double least = examine();
   double defect = least;
   double violation = kUnbounded;
-  int left = kPolishIterations;
+  const int granted = std::min(kPolishIterations, allowed_ - best.outcome.iterations);
+  int left = granted;
   while (left > 0 && defect > kDefectWanted) {
     problem.correct(correction_);
     const SolveOptions options{std::min(left, kPolishIterationsMax), model.config.tolerance, 1};
@@ -116,7 +117,7 @@ void CorrectedSolver::refine(const PlanarModel& model, const PlanarTask& task,
     best.outcome.x = chain_.x();
     best_ = chain_.solution();
   }
-  best.outcome.iterations += kPolishIterations - left;
+  best.outcome.iterations += granted - left;
 }
 
 }  // namespace hopscotch::planner

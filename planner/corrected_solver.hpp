@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string_view>
 
 #include "planner/chain_correction.hpp"
@@ -33,6 +34,9 @@ class CorrectedSolver {
   [[nodiscard]] SolvedMotion solve_near(const PlanarModel& model, const PlanarTask& task,
                                         const KnownJump& neighbour);
 
+  /// From now on a solve and its corrections take no more iterations than so. @pre positive
+  void allow(int iterations) { allowed_ = iterations; }
+
   /// What `solved`, the answer of the last solve, leaves for others to start from.
   [[nodiscard]] KnownJump known(const PlanarTask& task, const SolvedMotion& solved) const;
   /// The limit with the largest multiplier at the end of the last solve, by name.
@@ -49,6 +53,7 @@ class CorrectedSolver {
   ChainCorrection correction_;
   ChainSolution best_;  ///< Of the last solve.
   std::string_view obstacle_;
+  int allowed_ = std::numeric_limits<int>::max();
 };
 
 }  // namespace hopscotch::planner

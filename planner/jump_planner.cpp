@@ -40,6 +40,10 @@ constexpr double kStartRate = 0.30;        // [rad/s]
 /// Jumps of the library that a solve is started from before it is given up.
 constexpr std::size_t kNeighbours = 2;
 
+/// Of all rungs together: what the solves of one plan may take, so that its time has a bound
+/// (docs/decisions/0076). The library's jumps as they are cost next to nothing.
+constexpr int kIterationsInAll = 170;
+
 /// First landing step as a share of the mean one where the shipped rhythm, short steps first, gives
 /// no certified plan: the last steps are then shorter, and less happens between their knots.
 constexpr double kEvenFirstShare = 0.8;
@@ -193,6 +197,8 @@ struct JumpPlanner::Memory {
 
   [[nodiscard]] core::Result<core::JumpPlan> plan_by_ipopt(const Trial& trial);
   [[nodiscard]] core::Result<core::JumpPlan> climb_down(const Trial& trial);
+  /// Prepares one more solve; false when the plan has had its share of iterations.
+  [[nodiscard]] bool has_time();
   [[nodiscard]] core::Result<core::JumpPlan> by_even_landing(const Trial& trial);
   [[nodiscard]] core::Result<core::JumpPlan> by_neighbours(const Trial& trial, std::size_t count);
   [[nodiscard]] core::Result<core::JumpPlan> by_library(const Trial& trial);
@@ -246,19 +252,28 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::finish_near(const Trial& trial
   return plan;
 }
 
+bool JumpPlanner::Memory::has_time() {
+  const int left = kIterationsInAll - iterations;
+  if (left > 0) chain.allow(left);
+  return left > 0;
+}
+
 /// The ladder: the first rung that gives a certified plan.
 core::Result<core::JumpPlan> JumpPlanner::Memory::climb_down(const Trial& trial) {
   rung = PlanRung::solved;
-  if (trial.request.guess == StartGuess::previous && last) {
+  core::Result<core::JumpPlan> first = no_plan();
+  if (trial.request.guess == StartGuess::previous && last && has_time()) {
     const KnownJump from = *last;
-    if (core::Result<core::JumpPlan> plan = finish_near(trial, from)) return plan;
+    first = finish_near(trial, from);
+    if (first) return first;
     // A jump of the library may be nearer; from the guess takes longest.
     if (core::Result<core::JumpPlan> plan = by_neighbours(trial, 1)) return plan;
     rung = PlanRung::solved;
   }
   const auto& [model, task, request] = trial;
-  core::Result<core::JumpPlan> first =
-      finish(trial, chain.solve(model, task, kinematic_guess(model, task, layout)));
+  if (has_time()) {
+    first = finish(trial, chain.solve(model, task, kinematic_guess(model, task, layout)));
+  }
   if (first) return first;
   const std::string_view first_obstacle = obstacle;
   if (first.error().reason == Reason::certificate_refused) {
@@ -271,7 +286,7 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::climb_down(const Trial& trial)
 }
 
 core::Result<core::JumpPlan> JumpPlanner::Memory::by_even_landing(const Trial& trial) {
-  if (&trial.model != &straight) return no_plan();
+  if (&trial.model != &straight || !has_time()) return no_plan();
   rung = PlanRung::even_landing;
   const Trial again{even, trial.task, trial.request};
   return finish(again, chain.solve(even, trial.task, kinematic_guess(even, trial.task, layout)));
@@ -281,6 +296,7 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::by_neighbours(const Trial& tri
                                                                 std::size_t count) {
   rung = PlanRung::neighbour;
   for (const KnownJump* near : library->nearest(trial.task, count)) {
+    if (!has_time()) break;
     if (core::Result<core::JumpPlan> plan = finish_near(trial, *near)) return plan;
   }
   return no_plan();
