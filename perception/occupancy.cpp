@@ -23,8 +23,11 @@ OccupancyMemory::Voxel state_of(const octomap::OcTree& tree, const octomap::OcTr
   return node->getLogOdds() < 0.0F ? OccupancyMemory::Voxel::free : OccupancyMemory::Voxel::unknown;
 }
 
-octomap::Pointcloud cloud_of(const PlacedDepth& image, int step) {
+/// @param wide_step  For images 640 pixels wide; smaller ones are used in proportion.
+octomap::Pointcloud cloud_of(const PlacedDepth& image, int wide_step) {
   const core::CameraIntrinsics& lens = image.intrinsics;
+  constexpr int kWidth = 640;
+  const int step = std::max(1, wide_step * lens.width / kWidth);
   const Eigen::Isometry3f X_WC = image.X_WC.cast<float>();
   octomap::Pointcloud cloud;
   for (int v = step / 2; v < lens.height; v += step) {

@@ -72,7 +72,7 @@ struct OneStepConfig {
 /// The volumetric memory; section `perception.occupancy`.
 struct OccupancyConfig {
   double voxel = 0.0;        ///< Edge of a voxel [m].
-  int pixel_step = 1;        ///< Every so many pixels, in both directions, are used.
+  int pixel_step = 1;        ///< Of images 640 wide every so many pixels are used.
   double period = 0.0;       ///< Between frames that are taken in [s].
   double reach = 0.0;        ///< Remembered to so far from the camera along x and y of W [m].
   double half_height = 0.0;  ///< And above and below it [m].

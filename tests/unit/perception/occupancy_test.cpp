@@ -21,40 +21,44 @@ core::RobotState standing() {
   return test::standing_at(kFlat, 0.0, 0.0, 0.0);
 }
 
-/// The course as the standing robot sees it, without its own body.
+/// The course as the standing robot sees it, its own body and doubtful pixels left out.
 class View {
  public:
-  View(const Course& course, std::uint32_t seed)
-      : frame_(test::render(course, standing(), 320, 240)) {
-    test::add_noise(frame_, seed);
-    X_WC_.linear() = standing().R_WB;
-    X_WC_.translation() = standing().p_WB;
-    X_WC_ = X_WC_ * frame_.X_BC;
+  enum class Beam : std::uint8_t { none, hangs };
+
+  View(const Course& course, std::uint32_t seed, Beam beam = Beam::none)
+      : mapper_(test::perception_config(), test::hector()) {
+    core::DepthFrame frame = test::render(course, standing(), 320, 240);
+    if (beam == Beam::hangs) hang_beam(frame);
+    test::add_noise(frame, seed);
+    EXPECT_EQ(mapper_.integrate(frame, standing()), MapStatus::fused);
   }
 
-  /// A beam across the way, 0.6 to 0.7 m ahead.
-  View& with_beam() {
-    const core::CameraIntrinsics& lens = frame_.intrinsics;
+  [[nodiscard]] const PlacedDepth& image() const { return *mapper_.image(); }
+
+ private:
+  /// Across the way, 0.6 to 0.7 m ahead.
+  static void hang_beam(core::DepthFrame& frame) {
+    Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();
+    X_WC.linear() = standing().R_WB;
+    X_WC.translation() = standing().p_WB;
+    X_WC = X_WC * frame.X_BC;
+    const core::CameraIntrinsics& lens = frame.intrinsics;
     for (int v = 0; v < lens.height; ++v) {
       for (int u = 0; u < lens.width; ++u) {
         const Eigen::Vector3d ray =
-            X_WC_.linear() * Eigen::Vector3d((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1.0);
+            X_WC.linear() * Eigen::Vector3d((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1.0);
         const double depth =
-            test::hit_box({0.6, -1.0, kBeamBottom}, {0.7, 1.0, 0.8}, X_WC_.translation(), ray);
-        float& z = frame_.depth[static_cast<std::size_t>(v * lens.width + u)];
+            test::hit_box({0.6, -1.0, kBeamBottom}, {0.7, 1.0, 0.8}, X_WC.translation(), ray);
+        float& z = frame.depth[static_cast<std::size_t>(v * lens.width + u)];
         if (depth < 3.0 && (z == 0.0F || depth < static_cast<double>(z))) {
           z = static_cast<float>(depth);
         }
       }
     }
-    return *this;
   }
 
-  [[nodiscard]] PlacedDepth image() const { return {frame_.intrinsics, frame_.depth, X_WC_}; }
-
- private:
-  core::DepthFrame frame_;
-  Eigen::Isometry3d X_WC_ = Eigen::Isometry3d::Identity();
+  TerrainMapper mapper_;
 };
 
 OccupancyMemory memory() {
@@ -102,15 +106,17 @@ TEST(Occupancy, BeamHangsAndNothingElseDoes) {
     EXPECT_GT(lowest_over_the_way(volume), 1.0);
   }
   OccupancyMemory volume = memory();
-  look(volume, View(kFlat, 31U).with_beam(), 0, 3);
+  look(volume, View(kFlat, 31U, View::Beam::hangs), 0, 3);
   EXPECT_NEAR(lowest_over_the_way(volume), kBeamBottom, 0.035);
 }
 
-TEST(Occupancy, BeamThatIsTakenAwayHangsNoLonger) {
+// Only where the camera now sees something behind it: pixels beyond its range clear nothing.
+TEST(Occupancy, BeamThatIsTakenAwayHangsNoLongerWhereTheGroundBehindItIsSeen) {
+  constexpr float kSeenThrough = 0.40F;  // [m]
   OccupancyMemory volume = memory();
-  look(volume, View(kFlat, 31U).with_beam(), 0, 3);
+  look(volume, View(kFlat, 31U, View::Beam::hangs), 0, 3);
   look(volume, View(kFlat, 32U), 3, 2);
-  EXPECT_GT(lowest_over_the_way(volume), 1.0);
+  EXPECT_GT(lowest_over_the_way(volume), double{kSeenThrough});
 }
 
 TEST(Occupancy, WhatIsFarBehindIsForgotten) {
