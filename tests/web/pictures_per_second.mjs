@@ -12,7 +12,7 @@ const kSeconds = 10;
 
 try {
   const scenario = join(folder, 'fifty.yaml');
-  writeFileSync(scenario, 'name: fifty\nslabs: [{x_m: [-1.0, 40.0]}]\ngoal: {jumps: 50}\n');
+  writeFileSync(scenario, 'name: fifty\nslabs: [{x_m: [-1.0, 40.0], y_m: [-10.0, 10.0]}]\ngoal: {jumps: 50}\n');
   const run = join(folder, 'run');
   const made = await finish(program, ['run', scenario, '--perception', 'truth', '--no-pictures', '--out', run]);
   if (made.code !== 0) throw new Error(made.output);
