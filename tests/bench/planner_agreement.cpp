@@ -13,13 +13,8 @@
 #include <random>
 #include <vector>
 
-#include "core/config_reader.hpp"
 #include "planner/chain_solver.hpp"
-#include "planner/ipopt_problem.hpp"
-#include "planner/landing_phase.hpp"
-#include "planner/planar_task.hpp"
-#include "planner/step_target.hpp"
-#include "planner/warm_start.hpp"
+#include "tests/bench/grid_target.hpp"
 
 namespace {
 
@@ -28,37 +23,19 @@ using namespace hopscotch::planner;  // NOLINT
 
 constexpr double kAgreement = 1e-4;  // of costs, relative
 
-struct Target {
-  double distance = 0.0;
-  double height = 0.0;
-  StartKind start = StartKind::stand;
-};
-
 class Comparison {
  public:
-  explicit Comparison(const std::filesystem::path& folder)
-      : robot_(model::RobotParameters::load(folder / "robots" / "hector.yaml")),
-        root_(core::ConfigReader::from_file(folder / "hopscotch.yaml")),
-        posture_(model::StandPosture::load(root_.section("model").section("stand_posture"))),
-        model_(robot_, PlannerConfig::load(root_.section("planner"))),
-        layout_(model_.config.steps),
-        chain_(layout_) {}
+  explicit Comparison(const std::filesystem::path& config_folder)
+      : problems_(config_folder), chain_(problems_.layout) {}
 
-  void compare(const Target& target) {
-    const StepRequest step{.distance = target.distance,
-                           .height = target.height,
-                           .edge = default_edge(target.distance, target.height)};
-    const auto start = start_state(target.start, robot_, posture_);
-    if (!start) return;
-    const core::Result<PlanarTask> task = planar_task(
-        model_, {.start = *start, .target = step_target(step, robot_), .final_posture = posture_});
+  void compare(const GridTarget& target) {
+    const core::Result<PlanarTask> task = problems_.task_of(target);
     if (!task) return;
-    const Eigen::VectorXd guess = kinematic_guess(model_, *task, layout_);
-    const SolveOptions options{model_.config.iterations_max, model_.config.tolerance};
-    const ChainProblem problem(model_, *task, layout_);
-    const ChainOutcome chain = chain_.solve(problem, guess, options);
-    const SolveOutcome ipopt = by_ipopt(*task, guess, options);
-    note(target, chain, ipopt);
+    const auto& [robot, root, posture, model, layout] = problems_;
+    const Eigen::VectorXd guess = kinematic_guess(model, *task, layout);
+    const ChainProblem problem(model, *task, layout);
+    const ChainOutcome chain = chain_.solve(problem, guess, problems_.options());
+    note(target, chain, problems_.by_ipopt(*task, guess));
   }
 
   void print() {
@@ -80,18 +57,7 @@ class Comparison {
   }
 
  private:
-  [[nodiscard]] SolveOutcome by_ipopt(const PlanarTask& task, const Eigen::VectorXd& guess,
-                                      const SolveOptions& options) const {
-    BlockList blocks;
-    add_takeoff(model_, task, layout_, blocks);
-    add_flight(model_, task, layout_, blocks);
-    add_landing(model_, task, layout_, blocks);
-    return solve_with_ipopt({layout_.size(), std::move(blocks)},
-                            decision_bounds(model_, task, layout_), decision_sizes(layout_),
-                            {guess}, options);
-  }
-
-  void note(const Target& target, const ChainOutcome& chain, const SolveOutcome& ipopt) {
+  void note(const GridTarget& target, const ChainOutcome& chain, const SolveOutcome& ipopt) {
     const bool by_chain = chain.status == SolveStatus::solved;
     const bool by_ipopt = ipopt.status == SolveStatus::solved;
     if (by_chain && !by_ipopt) ++only_chain_;
@@ -106,11 +72,7 @@ class Comparison {
                 ipopt.cost, relative);
   }
 
-  model::RobotParameters robot_;
-  core::ConfigReader root_;
-  model::StandPosture posture_;
-  PlanarModel model_;
-  DecisionLayout layout_;
+  GridProblems problems_;
   ChainSolver chain_;
   std::vector<double> difference_;
   int only_chain_ = 0;

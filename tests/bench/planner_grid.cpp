@@ -14,12 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "core/config_reader.hpp"
-#include "planner/ipopt_problem.hpp"
-#include "planner/landing_phase.hpp"
-#include "planner/planar_task.hpp"
-#include "planner/step_target.hpp"
-#include "planner/warm_start.hpp"
+#include "tests/bench/grid_target.hpp"
 
 namespace {
 
@@ -29,71 +24,29 @@ using namespace hopscotch::planner;  // NOLINT
 /// An attempt that ends further from feasible than this is not followed by one from elsewhere.
 constexpr double kHopeless = 0.1;
 
-struct Entry {
-  double distance = 0.0;
-  double height = 0.0;
-  StartKind start = StartKind::stand;
-};
+/// The closed-form guess for a target a little beside.
+Eigen::VectorXd guess_beside(const GridProblems& problems, PlanarTask task, double ahead,
+                             double up) {
+  task.distance += ahead;
+  task.height += up;
+  return kinematic_guess(problems.model, task, problems.layout);
+}
 
-class Grid {
- public:
-  explicit Grid(const std::filesystem::path& folder)
-      : robot_(model::RobotParameters::load(folder / "robots" / "hector.yaml")),
-        root_(core::ConfigReader::from_file(folder / "hopscotch.yaml")),
-        posture_(model::StandPosture::load(root_.section("model").section("stand_posture"))),
-        model_(robot_, PlannerConfig::load(root_.section("planner"))),
-        layout_(model_.config.steps) {}
-
-  [[nodiscard]] bool is_reachable(const Entry& entry) const {
-    const core::Result<PlanarTask> task = task_of(entry);
-    if (!task) return false;
-    constexpr std::array<std::array<double, 2>, 5> kStarts{
-        {{0.0, 0.0}, {-0.05, 0.0}, {0.05, 0.0}, {0.0, 0.05}, {0.0, -0.05}}};
-    for (const auto& [ahead, up] : kStarts) {
-      const SolveOutcome outcome = solve(*task, guess(*task, ahead, up));
-      if (outcome.status == SolveStatus::solved && outcome.violation < 1e-3) return true;
-      if (outcome.violation > kHopeless) return false;
-    }
-    return false;
+bool is_reachable(const GridProblems& problems, const GridTarget& target) {
+  const core::Result<PlanarTask> task = problems.task_of(target);
+  if (!task) return false;
+  constexpr std::array<std::array<double, 2>, 5> kStarts{
+      {{0.0, 0.0}, {-0.05, 0.0}, {0.05, 0.0}, {0.0, 0.05}, {0.0, -0.05}}};
+  for (const auto& [ahead, up] : kStarts) {
+    const SolveOutcome outcome = problems.by_ipopt(*task, guess_beside(problems, *task, ahead, up));
+    if (outcome.status == SolveStatus::solved && outcome.violation < 1e-3) return true;
+    if (outcome.violation > kHopeless) return false;
   }
+  return false;
+}
 
- private:
-  [[nodiscard]] core::Result<PlanarTask> task_of(const Entry& entry) const {
-    const auto start = start_state(entry.start, robot_, posture_);
-    if (!start) return core::Refusal{core::Reason::out_of_reach, "start"};
-    return planar_task(model_,
-                       {.start = *start,
-                        .target = step_target({.distance = entry.distance,
-                                               .height = entry.height,
-                                               .edge = default_edge(entry.distance, entry.height)},
-                                              robot_),
-                        .final_posture = posture_});
-  }
-  /// The closed-form guess for a target a little beside.
-  [[nodiscard]] Eigen::VectorXd guess(PlanarTask task, double ahead, double up) const {
-    task.distance += ahead;
-    task.height += up;
-    return kinematic_guess(model_, task, layout_);
-  }
-  [[nodiscard]] SolveOutcome solve(const PlanarTask& task, const Eigen::VectorXd& start) const {
-    BlockList blocks;
-    add_takeoff(model_, task, layout_, blocks);
-    add_flight(model_, task, layout_, blocks);
-    add_landing(model_, task, layout_, blocks);
-    return solve_with_ipopt({layout_.size(), std::move(blocks)},
-                            decision_bounds(model_, task, layout_), decision_sizes(layout_),
-                            {start}, {model_.config.iterations_max, model_.config.tolerance});
-  }
-
-  model::RobotParameters robot_;
-  core::ConfigReader root_;
-  model::StandPosture posture_;
-  PlanarModel model_;
-  DecisionLayout layout_;
-};
-
-std::vector<Entry> candidates(StartKind start) {
-  std::vector<Entry> all;
+std::vector<GridTarget> candidates(StartKind start) {
+  std::vector<GridTarget> all;
   for (int up = -30; up <= 25; up += 5) {
     for (int ahead = 150; ahead <= 600; ahead += 20) {
       all.push_back({0.001 * ahead, 0.01 * up, start});
@@ -103,12 +56,12 @@ std::vector<Entry> candidates(StartKind start) {
 }
 
 int reach(const std::string& only) {
-  const Grid grid(std::filesystem::path(HOPSCOTCH_SOURCE_DIR) / "config");
+  const GridProblems problems(std::filesystem::path(HOPSCOTCH_SOURCE_DIR) / "config");
   for (const StartKind start : {StartKind::stand, StartKind::low, StartKind::moving}) {
     if (!only.empty() && only != start_kind_name(start)) continue;
-    for (const Entry& entry : candidates(start)) {
-      if (!grid.is_reachable(entry)) continue;
-      std::printf("%.3f,%.2f,%s\n", entry.distance, entry.height,
+    for (const GridTarget& target : candidates(start)) {
+      if (!is_reachable(problems, target)) continue;
+      std::printf("%.3f,%.2f,%s\n", target.distance, target.height,
                   std::string(start_kind_name(start)).c_str());
       std::fflush(stdout);
     }

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "sim/sim_camera.hpp"
 #include "tests/scenario/wired_robot.hpp"
@@ -68,7 +69,12 @@ TEST(WiredRobot, LeapsWithItsStagesOnThreads) {
   EXPECT_NEAR(robot.world.truth().state.p_WB.x(), 0.25, 0.06);
 }
 
-RobotConfig config_on(const char* scenario) {
+/// @param slabs  The ground, as in a scenario file.
+RobotConfig config_on(const std::string& slabs) {
+  const std::string scenario =
+      "name: ground\ncamera: {width: 320, height: 240}\nplant: {latency_ms: 0}\n"
+      "goal: {jumps: 1}\nslabs:\n" +
+      slabs;
   RobotConfig config = testing::wired_config();
   config.session.has_eyes = true;
   config.emulation.scenario = sim::Scenario::from_text(scenario, "ground");
@@ -91,13 +97,8 @@ struct SeeingRobot {
 
 TEST(WiredRobot, SeesTheStepThatItLeapsOnto) {
   SeeingRobot seeing(
-      config_on("name: step\n"
-                "camera: {width: 320, height: 240}\n"
-                "slabs:\n"
-                "  - {x_m: [-1.0, 0.15]}\n"
-                "  - {x_m: [0.15, 2.0], top_m: 0.06}\n"
-                "plant: {latency_ms: 0}\n"
-                "goal: {jumps: 1}\n"));
+      config_on("  - {x_m: [-1.0, 0.15]}\n"
+                "  - {x_m: [0.15, 2.0], top_m: 0.06}\n"));
   WiredRobot& robot = seeing.robot;
   ASSERT_TRUE(robot.stand());
   const double standing = robot.world.truth().state.p_WB.z();
@@ -110,13 +111,7 @@ TEST(WiredRobot, SeesTheStepThatItLeapsOnto) {
 }
 
 TEST(WiredRobot, HoldsBeforeAPitAndSaysWhy) {
-  SeeingRobot seeing(
-      config_on("name: brink\n"
-                "camera: {width: 320, height: 240}\n"
-                "slabs:\n"
-                "  - {x_m: [-1.0, 0.12]}\n"
-                "plant: {latency_ms: 0}\n"
-                "goal: {jumps: 1}\n"));
+  SeeingRobot seeing(config_on("  - {x_m: [-1.0, 0.12]}\n"));
   WiredRobot& robot = seeing.robot;
   ASSERT_TRUE(robot.stand());
   robot.ask(core::ModeRequest::jump);
@@ -135,13 +130,7 @@ TEST(WiredRobot, HoldsBeforeAPitAndSaysWhy) {
 }
 
 TEST(WiredRobot, HoldsWhenItsEyesGoDark) {
-  SeeingRobot seeing(
-      config_on("name: level\n"
-                "camera: {width: 320, height: 240}\n"
-                "slabs:\n"
-                "  - {x_m: [-1.0, 3.0]}\n"
-                "plant: {latency_ms: 0}\n"
-                "goal: {jumps: 1}\n"));
+  SeeingRobot seeing(config_on("  - {x_m: [-1.0, 3.0]}\n"));
   WiredRobot& robot = seeing.robot;
   ASSERT_TRUE(robot.stand());
   robot.each_tick = nullptr;  // no frame is exposed any more

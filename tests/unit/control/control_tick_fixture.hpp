@@ -4,6 +4,7 @@
 
 #include "control/control_tick.hpp"
 #include "tests/unit/control/fake_plan.hpp"
+#include "tests/unit/control/hop_config.hpp"
 
 namespace hopscotch::control::testing {
 
@@ -31,15 +32,9 @@ inline ControlConfig test_config() {
                        .rest_rate = 1.0,
                        .stray_max = 10.0,  // the state does not follow the plan here
                        .commit_speed = 0.2};
-  config.recovery_hop = {.excess_along = 10.0,  // nor does it hop
-                         .excess_across = 10.0,
-                         .wait = 0.06,
-                         .lift_speed = 0.75,
-                         .push_acceleration = 9.0,
-                         .clearance = 0.03,
-                         .landing_height = 0.37,
-                         .reach_share = 1.0,
-                         .reach_max = 0.14};
+  config.recovery_hop = kHopConfig;
+  config.recovery_hop.excess_along = 10.0;  // nor does it hop
+  config.recovery_hop.excess_across = 10.0;
   config.actuation_delay = kActuationDelay;
   config.mpc_delay = 0.001;
   config.wrench_age_max = 0.025;

@@ -9,19 +9,12 @@
 #include "model/knot_state.hpp"
 #include "model/rigid_body.hpp"
 #include "model/stand_posture.hpp"
+#include "tests/unit/control/hop_config.hpp"
 
 namespace hopscotch::control {
 namespace {
 
-constexpr RecoveryHopConfig kConfig{.excess_along = 0.01,
-                                    .excess_across = 0.01,
-                                    .wait = 0.06,
-                                    .lift_speed = 0.75,
-                                    .push_acceleration = 9.0,
-                                    .clearance = 0.03,
-                                    .landing_height = 0.37,
-                                    .reach_share = 1.0,
-                                    .reach_max = 0.14};
+constexpr RecoveryHopConfig kConfig = testing::kHopConfig;
 
 /// A robot that stands turned by 0.5 rad somewhere in W.
 class RecoveryHopTest : public ::testing::Test {
@@ -90,7 +83,7 @@ TEST_F(RecoveryHopTest, EveryKnotIsAPostureOfTheRobotWithItsCoMWhereItIsSaidToBe
 }
 
 TEST_F(RecoveryHopTest, TheFlightIsBallisticAndEndsWithTheSolesAtTheCapturePoint) {
-  for (const Eigen::Vector2d speed : {Eigen::Vector2d(0.5, 0.0), Eigen::Vector2d(-0.5, 0.0)}) {
+  for (const Eigen::Vector2d& speed : {Eigen::Vector2d(0.5, 0.0), Eigen::Vector2d(-0.5, 0.0)}) {
     ASSERT_TRUE(make_recovery_hop(kConfig, robot_, moving(speed.x(), speed.y()), stand_, plan_));
     const auto touchdown = std::find_if(
         plan_.knots.begin(), plan_.knots.end(),
