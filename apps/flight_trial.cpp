@@ -1,6 +1,8 @@
 #include "apps/flight_trial.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -43,6 +45,12 @@ double yaw_of(const std::array<Eigen::Isometry3d, core::kLegs>& X_WF) {
   return std::atan2(along.y(), along.x());
 }
 
+/// Number 0 is that of motions which nobody planned.
+core::JumpPlan numbered(core::JumpPlan plan) {
+  plan.id = std::max<std::uint64_t>(plan.id, 1);
+  return plan;
+}
+
 /// Controller, MPC and plant, one millisecond after the other.
 class TrialRun {
  public:
@@ -82,7 +90,7 @@ class TrialRun {
     if (!offered_ && now.seconds() >= kStandTime) {
       offered_ = true;
       place_ = sim::takeoff_place(truth_);
-      control_.offer(trial_.plan);
+      control_.offer(numbered(trial_.plan));
     }
     command_ = control_.tick(truth_.state);
     balance(now);

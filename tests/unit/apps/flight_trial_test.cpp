@@ -16,8 +16,7 @@ FlightTrial trial(planner::StepRequest step) {
   const auto plan = planner.plan(
       {.start = planner::standing_state(*model::stand_pose(robot, config.stand_posture)),
        .target = planner::step_target(step, robot),
-       .final_posture = config.stand_posture,
-       .id = 1});
+       .final_posture = config.stand_posture});
   EXPECT_TRUE(plan) << plan.error().text();
   return {*plan, step, config, robot};
 }
