@@ -43,6 +43,22 @@ TurnOfAll turn_of_all(const FilterState& state, const std::array<bool, core::kLe
   return turning;
 }
 
+/// As errors of the group, place and heading are tied: a turn found now would move a trunk that is
+/// 80 m from W's origin by 80 m times its angle, although nothing was learnt of where it is. Where
+/// the trunk comes down is where it is, as well as that is known, whatever its heading.
+void untie_place(const Vector3d& p_WB, InvariantFilter::Covariance& P) {
+  constexpr int kTurn = InvariantFilter::kAttitude;
+  constexpr int kPlace = InvariantFilter::kPosition;
+  const Matrix3d lever = model::skew(p_WB);
+  const Matrix3d turn = P.block<3, 3>(kTurn, kTurn);
+  const Matrix3d tied = lever * P.block<3, 3>(kTurn, kPlace);
+  const Matrix3d of_place =
+      P.block<3, 3>(kPlace, kPlace) - tied - tied.transpose() + lever * turn * lever.transpose();
+  P.middleRows<3>(kPlace) = (lever * P.middleRows<3>(kTurn)).eval();
+  P.middleCols<3>(kPlace) = P.middleRows<3>(kPlace).transpose().eval();
+  P.block<3, 3>(kPlace, kPlace) = lever * turn * lever.transpose() + of_place;
+}
+
 }  // namespace
 
 InvariantFilter::InvariantFilter(const FilterConfig& config, const FilterState& start)
@@ -115,6 +131,7 @@ void InvariantFilter::add_noise(const Vector3d& force, double dt,
 }
 
 void InvariantFilter::add_foot(core::Leg leg, const SeenFoot& seen) noexcept {
+  if (!stands(core::Leg::left) && !stands(core::Leg::right)) untie_place(state_.p_WB, covariance_);
   const int sole = sole_block(leg);
   state_.p_WF[core::index(leg)] = state_.p_WB + state_.R_WB * seen.p_BF;
   covariance_.middleRows<3>(sole) = covariance_.middleRows<3>(kPosition);

@@ -41,10 +41,11 @@ class SwingingTrunk {
   [[nodiscard]] const FilterState& truth() const { return truth_; }
   [[nodiscard]] const Vector3d& gyro_bias() const { return gyro_bias_; }
 
-  void step(double time, InvariantFilter& filter) {
+  /// @param pull Ahead, beside the swinging [m/s^2].
+  void step(double time, InvariantFilter& filter, double pull = 0.0) {
     const Vector3d rate(2.0 * std::sin(9.0 * time), 3.0 * std::cos(7.0 * time),
                         std::sin(4.0 * time));
-    const Vector3d push(3.0 * std::cos(5.0 * time), 2.0 * std::sin(6.0 * time),
+    const Vector3d push(3.0 * std::cos(5.0 * time) + pull, 2.0 * std::sin(6.0 * time),
                         4.0 * std::sin(8.0 * time));
     const Vector3d turn = kTick * rate;
     truth_.R_WB = truth_.R_WB * Eigen::AngleAxisd(turn.norm(), turn.normalized());
@@ -157,6 +158,32 @@ TEST(InvariantFilter, AFlightCostsMillimetres) {
   }
   const Vector3d after = filter.state().p_WB - trunk.truth().p_WB;
   EXPECT_LT((after - before).norm(), 0.01);
+}
+
+TEST(InvariantFilter, AHeadingFoundLateMovesNoPlaceFarOff) {
+  constexpr double kPull = 60.0;  // for a second, and back: 60 m of flight [m/s^2]
+  FilterConfig config = testing::estimator_config().filter;
+  config.gyro_bias_sigma = 0.05;
+  SwingingTrunk trunk(config, 8);
+  InvariantFilter filter(config, trunk.first_guess());
+  for (int tick = 0; tick < 2000; ++tick) {
+    trunk.step(kTick * tick, filter, tick < 1000 ? kPull : -kPull);
+  }
+  ASSERT_GT(trunk.truth().p_WB.x(), 50.0);
+  const auto place_error = [&] { return filter.state().p_WB - trunk.truth().p_WB; };
+  const auto heading_error = [&] {
+    return error_of(filter.state(), trunk.truth())(InvariantFilter::kAttitude + 2);
+  };
+  trunk.stand(filter);
+  const Vector3d place = place_error();
+  const double heading = heading_error();
+  for (int tick = 2000; tick < 3500; ++tick) {
+    trunk.step(kTick * tick, filter);
+    trunk.stand(filter);
+  }
+  // The gyroscope's bias shows while the trunk swings, and with it what it did to the heading.
+  EXPECT_LT(std::abs(heading_error()), std::abs(heading) - 0.01);
+  EXPECT_LT((place_error() - place).norm(), 0.05);
 }
 
 TEST(InvariantFilter, ASlippedFootIsTakenAnew) {
