@@ -42,7 +42,7 @@ class Page {
     const stage = get('stage').getBoundingClientRect();
     box.style.left = `${event.clientX - stage.left}px`;
     box.style.top = `${event.clientY - stage.top}px`;
-    box.textContent = hit.object.userData.text;
+    box.textContent = hit.object.userData.texts[hit.instanceId];
   }
 
   async propose(event) {
@@ -53,6 +53,7 @@ class Page {
     card.replaceChildren(make('p', 'Judging the place…'));
     const reply = await post('api/propose', { x: hit.point.x, y: hit.point.y }).catch((error) => ({ reason: String(error) }));
     this.terrain.propose(reply);
+    this.stage.stale = true;
     this.showProposal(card, reply);
   }
 
@@ -70,7 +71,7 @@ class Page {
     const send = make('button', 'Jump there next', 'primary');
     send.id = 'send';
     send.disabled = !reply.accepted;
-    const close = () => { card.hidden = true; this.terrain.propose(null); };
+    const close = () => { card.hidden = true; this.terrain.propose(null); this.stage.stale = true; };
     send.addEventListener('click', async () => {
       await post('api/command', { target: { distance: reply.distance, lateral: reply.lateral, yaw: reply.yaw } });
       close();
@@ -91,6 +92,7 @@ class Page {
   draw(seconds) {
     const { feed, player } = this;
     player.advance(seconds);
+    const moving = this.hasChanged();
     if (feed.frames.length > 0) {
       const index = feed.indexAt(player.time);
       const before = feed.frames[index];
@@ -103,9 +105,16 @@ class Page {
       this.terrain.flown(feed, index);
       this.tell(before, index);
     }
-    this.stage.draw();
+    this.stage.draw(seconds, moving);
     this.pictures += 1;
     document.body.dataset.pictures = this.pictures;
+  }
+
+  hasChanged() {
+    const now = [this.player.time, this.feed.frames.length, this.feed.happenings.length];
+    const changed = now.some((value, i) => value !== this.seen?.[i]);
+    this.seen = now;
+    return changed;
   }
 
   // Numbers change ten times a second: faster nobody reads.
@@ -141,7 +150,7 @@ async function start() {
   follow(feed);
   let last = performance.now();
   const loop = (now) => {
-    page.draw(Math.min(0.1, (now - last) / 1000));
+    page.draw((now - last) / 1000);
     last = now;
     requestAnimationFrame(loop);
   };

@@ -41,7 +41,7 @@ export class Player {
       this.time = behind > 0.5 || behind < 0 ? aim : this.time + Math.min(behind, seconds * (1 + behind));
       if (!feed.live) this.live = false;
     } else if (this.playing) {
-      this.time += seconds * Number(get('speed').value);
+      this.time += Math.min(0.1, seconds) * Number(get('speed').value);
       if (this.time >= feed.end) {
         this.time = feed.end;
         this.playing = false;

@@ -5,7 +5,7 @@ const kLegs = ['left', 'right'];
 const kUp = new THREE.Vector3(0, 1, 0);
 
 function limb(radius, color) {
-  return new THREE.Mesh(new THREE.CapsuleGeometry(radius, 1, 4, 10), new THREE.MeshStandardMaterial({ color, roughness: 0.55 }));
+  return new THREE.Mesh(new THREE.CapsuleGeometry(radius, 1, 4, 10), new THREE.MeshLambertMaterial({ color }));
 }
 
 // Stretches a capsule of length 1 from a to b.
@@ -20,8 +20,8 @@ export class Robot {
   constructor(about) {
     this.group = new THREE.Group();
     const [x, y, z] = about.trunk_box;
-    this.trunk = new THREE.Mesh(new THREE.BoxGeometry(x, y, z), new THREE.MeshStandardMaterial({ color: 0x26424f, roughness: 0.5 }));
-    const face = new THREE.Mesh(new THREE.BoxGeometry(0.012, y * 0.7, z * 0.3), new THREE.MeshStandardMaterial({ color: 0xf2b441 }));
+    this.trunk = new THREE.Mesh(new THREE.BoxGeometry(x, y, z), new THREE.MeshLambertMaterial({ color: 0x26424f }));
+    const face = new THREE.Mesh(new THREE.BoxGeometry(0.012, y * 0.7, z * 0.3), new THREE.MeshLambertMaterial({ color: 0xf2b441 }));
     face.position.set(x / 2, 0, z * 0.22);
     this.trunk.add(face);
     this.group.add(this.trunk);
@@ -30,7 +30,7 @@ export class Robot {
       const parts = {
         thigh: limb(about.thigh_radius, color),
         shank: limb(about.shank_radius, color),
-        foot: new THREE.Mesh(new THREE.BoxGeometry(about.foot_length, about.foot_width, 0.02), new THREE.MeshStandardMaterial({ color: 0x20343d })),
+        foot: new THREE.Mesh(new THREE.BoxGeometry(about.foot_length, about.foot_width, 0.02), new THREE.MeshLambertMaterial({ color: 0x20343d })),
       };
       this.group.add(parts.thigh, parts.shank, parts.foot);
       return parts;

@@ -2,10 +2,23 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
+// Shares of the screen's resolution: a machine without a graphics card keeps pace at a lower one.
+const kSharpness = [1, 0.7, 0.5];
+const kSlowPicture = 1 / 28;  // [s]
+
+function drawnBySoftware() {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  const name = gl?.getExtension('WEBGL_debug_renderer_info');
+  return Boolean(name) && /swiftshader|llvmpipe|software/i.test(gl.getParameter(name.UNMASKED_RENDERER_WEBGL));
+}
+
 export class Stage {
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: window.devicePixelRatio < 2, preserveDrawingBuffer: true });
+    this.stale = true;
+    this.level = 0;  // of sharpness that moving pictures are drawn with
+    this.pace = 0;  // seconds a moving picture, averaged
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !drawnBySoftware(), preserveDrawingBuffer: true });
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(0xeef3f5);
     this.scene.fog = new THREE.Fog(0xeef3f5, 6, 16);
@@ -27,8 +40,8 @@ export class Stage {
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
+    this.stale = true;
     this.camera.aspect = width / Math.max(height, 1);
     this.camera.updateProjectionMatrix();
   }
@@ -43,9 +56,26 @@ export class Stage {
     this.camera.position.y += dy;
   }
 
-  draw() {
-    this.controls.update();
+  // Draws what has changed: sharp when it stands still, else as sharp as keeps thirty pictures a second.
+  // @param seconds since this was last asked for
+  // @param moving whether the scene has changed
+  draw(seconds, moving) {
+    const turned = this.controls.update();
+    if (!moving && !turned && !this.stale) return;
+    const still = !moving && !turned;
+    if (!still) this.keepPace(seconds);
+    const ratio = kSharpness[still ? 0 : this.level] * Math.min(window.devicePixelRatio, 2);
+    if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
     this.renderer.render(this.scene, this.camera);
+    this.stale = !still;  // once more, sharp, when it has come to rest
+  }
+
+  keepPace(seconds) {
+    if (seconds > 1) return;  // the page was hidden
+    this.pace = 0.8 * this.pace + 0.2 * seconds;
+    if (this.pace < kSlowPicture || this.level + 1 === kSharpness.length) return;
+    this.level += 1;
+    this.pace = 0;
   }
 
   // What lies under a place on the canvas, nearest first.

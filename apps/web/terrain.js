@@ -2,15 +2,26 @@
 import * as THREE from 'three';
 
 const kColors = { observed: 0x4fa3a5, occluded: 0xd98c3f, unseen: 0x8d99a0, planned: 0x8a4fb5, flown: 0x17252b };
-const kStates = [kColors.unseen, kColors.occluded, kColors.observed];
+const kStates = [kColors.unseen, kColors.occluded, kColors.observed].map((color) => new THREE.Color(color));
 
-function line(points, color, options = {}) {
-  const geometry = new THREE.BufferGeometry().setFromPoints(points);
-  const material = options.dashed
-    ? new THREE.LineDashedMaterial({ color, dashSize: 0.02, gapSize: 0.014 })
-    : new THREE.LineBasicMaterial({ color });
-  const result = new THREE.Line(geometry, material);
-  if (options.dashed) result.computeLineDistances();
+// Made once: a material that comes and goes with each decision has its shader compiled each time.
+const kPaint = {
+  slab: new THREE.MeshLambertMaterial({ color: 0xd5dde0, flatShading: true, side: THREE.DoubleSide }),
+  pit: new THREE.MeshLambertMaterial({ color: 0xbfcacf }),
+  cells: new THREE.MeshBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.75, side: THREE.DoubleSide }),
+  marker: new THREE.MeshBasicMaterial(),
+  soles: new THREE.MeshBasicMaterial({ color: 0xf2b441, transparent: true, opacity: 0.85 }),
+  goal: new THREE.LineBasicMaterial({ color: 0x4f9d69 }),
+  profile: new THREE.LineBasicMaterial({ color: 0x14666a }),
+  edge: new THREE.LineBasicMaterial({ color: 0xb03a2e }),
+  flown: new THREE.LineBasicMaterial({ color: kColors.flown }),
+  planned: new THREE.LineDashedMaterial({ color: kColors.planned, dashSize: 0.02, gapSize: 0.014 }),
+  proposed: new THREE.LineDashedMaterial({ color: 0xf2b441, dashSize: 0.02, gapSize: 0.014 }),
+};
+
+function line(points, material) {
+  const result = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), material);
+  if (material.isLineDashedMaterial) result.computeLineDistances();
   return result;
 }
 
@@ -24,14 +35,11 @@ function slabMesh(slab, floor) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.Float32BufferAttribute(position, 3));
   geometry.computeVertexNormals();
-  return new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({ color: 0xd5dde0, roughness: 0.95, side: THREE.DoubleSide }));
+  return new THREE.Mesh(geometry, kPaint.slab);
 }
 
 function free(object) {
-  object.traverse((part) => {
-    part.geometry?.dispose();
-    part.material?.dispose();
-  });
+  object.traverse((part) => part.geometry?.dispose());
   object.removeFromParent();
 }
 
@@ -47,7 +55,7 @@ export class Terrain {
 
   addWorld(world) {
     const pit = world?.pit_z ?? 0;
-    const floor = new THREE.Mesh(new THREE.PlaneGeometry(140, 40), new THREE.MeshStandardMaterial({ color: 0xbfcacf, roughness: 1 }));
+    const floor = new THREE.Mesh(new THREE.PlaneGeometry(140, 40), kPaint.pit);
     floor.position.set(50, 0, pit);
     this.scene.add(floor);
     this.solid.push(floor);
@@ -58,7 +66,7 @@ export class Terrain {
       this.solid.push(mesh);
     }
     if (world.goal_x !== null) {
-      const goal = line([new THREE.Vector3(world.goal_x, -0.6, 0.005), new THREE.Vector3(world.goal_x, 0.6, 0.005)], 0x4f9d69);
+      const goal = line([new THREE.Vector3(world.goal_x, -0.6, 0.005), new THREE.Vector3(world.goal_x, 0.6, 0.005)], kPaint.goal);
       this.scene.add(goal);
     }
   }
@@ -82,33 +90,42 @@ export class Terrain {
     this.shown = { map, terrain, choice, plan };
   }
 
+  // A strip for each run of measured cells of one height along x; a dot for every second cell in x and y where
+  // nothing was measured.
   mapCells(map) {
     const [nx, ny] = map.size;
     const r = map.resolution;
+    const lift = 0.012;  // above ground that the estimated state takes to be higher
     const position = [];
     const color = [];
-    const shade = new THREE.Color();
-    const lift = 0.004;
+    const index = [];
+    const lay = (ix, iy, count, z, state) => {
+      const [before, half] = state === 2 ? [0, 0.5 * r] : [0.25 * r, 0.25 * r];
+      const x = map.origin[0] + ix * r;
+      const y = map.origin[1] + (iy + 0.5) * r;
+      const [begin, end] = [x + before, x + count * r - before];
+      const first = position.length / 3;
+      position.push(begin, y - half, z, end, y - half, z, end, y + half, z, begin, y + half, z);
+      const shade = kStates[state];
+      for (let i = 0; i < 4; ++i) color.push(shade.r, shade.g, shade.b);
+      index.push(first, first + 1, first + 2, first, first + 2, first + 3);
+    };
     for (let iy = 0; iy < ny; ++iy) {
-      for (let ix = 0; ix < nx; ++ix) {
+      for (let ix = 0, count = 1; ix < nx; ix += count) {
         const at = iy * nx + ix;
         const state = Number(map.state[at]);
-        if (state !== 2 && (ix % 2 || iy % 2)) continue;  // sparse where nothing was measured
-        const z = state === 2 ? map.height_mm[at] * 1e-3 + lift : lift;
-        const x = map.origin[0] + ix * r;
-        const y = map.origin[1] + iy * r;
-        const s = state === 2 ? 0.42 * r : 0.25 * r;
-        const cx = x + 0.5 * r;
-        const cy = y + 0.5 * r;
-        for (const [dx, dy] of [[-s, -s], [s, -s], [s, s], [-s, -s], [s, s], [-s, s]]) position.push(cx + dx, cy + dy, z);
-        shade.set(kStates[state]);
-        for (let i = 0; i < 6; ++i) color.push(shade.r, shade.g, shade.b);
+        const same = (ahead) => ix + ahead < nx && map.state[at + ahead] === map.state[at] && Math.abs(map.height_mm[at + ahead] - map.height_mm[at]) <= 1;
+        count = 1;
+        while (state === 2 && same(count)) ++count;
+        if (state === 2) lay(ix, iy, count, map.height_mm[at] * 1e-3 + lift, state);
+        else if (ix % 2 === 0 && iy % 2 === 0) lay(ix, iy, 1, lift, state);
       }
     }
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.Float32BufferAttribute(position, 3));
     geometry.setAttribute('color', new THREE.Float32BufferAttribute(color, 3));
-    return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.75, side: THREE.DoubleSide }));
+    geometry.setIndex(index);
+    return new THREE.Mesh(geometry, kPaint.cells);
   }
 
   // In W from x along and y to the left of a jump line, z above its origin.
@@ -124,14 +141,14 @@ export class Terrain {
     const points = [];
     terrain.mean.forEach((z, i) => {
       if (z === null || terrain.state[i] !== '2') return;
-      points.push(Terrain.inWorld(terrain, terrain.start + i * terrain.step, 0, z + 0.008));
+      points.push(Terrain.inWorld(terrain, terrain.start + i * terrain.step, 0, z + 0.016));
     });
-    group.add(line(points, 0x14666a));
+    group.add(line(points, kPaint.profile));
     for (const edge of terrain.edges) {
       const i = Math.min(terrain.mean.length - 1, Math.max(0, Math.round((edge.x - terrain.start) / terrain.step)));
-      const z = Math.max(terrain.mean[i] ?? 0, terrain.mean[Math.max(0, i - 2)] ?? 0) + 0.012;
+      const z = Math.max(terrain.mean[i] ?? 0, terrain.mean[Math.max(0, i - 2)] ?? 0) + 0.02;
       const ends = [-0.16, 0.16].map((y) => Terrain.inWorld(terrain, edge.x, y, z));
-      group.add(line(ends, 0xb03a2e));
+      group.add(line(ends, kPaint.edge));
     }
     return group;
   }
@@ -141,36 +158,45 @@ export class Terrain {
     const group = new THREE.Group();
     this.markers = [];
     if (choice.heading === null) return group;
-    const mark = (mesh, text) => {
-      mesh.userData.text = text;
-      this.markers.push(mesh);
-      group.add(mesh);
-    };
-    for (const place of choice.ranked) {
-      const disc = new THREE.Mesh(new THREE.CylinderGeometry(0.012, 0.012, 0.006, 14), new THREE.MeshBasicMaterial({ color: new THREE.Color().setHSL(0.33 * Math.max(0, (place.probability - 0.9) * 10), 0.55, 0.42) }));
-      disc.rotation.x = Math.PI / 2;
-      disc.position.copy(Terrain.inWorld(choice, place.distance, 0, place.height + 0.014));
-      mark(disc, `${(100 * place.distance).toFixed(0)} cm, ${(100 * place.height).toFixed(1)} cm up: safe ${(100 * place.probability).toFixed(1)} %, margin ${(100 * place.margin).toFixed(1)} cm`);
-    }
-    for (const place of choice.rejected) {
-      const cross = new THREE.Mesh(new THREE.OctahedronGeometry(0.011), new THREE.MeshBasicMaterial({ color: 0xb03a2e }));
-      cross.position.copy(Terrain.inWorld(choice, place.distance, 0, 0.02));
-      mark(cross, `${(100 * place.distance).toFixed(0)} cm: ${place.why.replaceAll('_', ' ')}`);
-    }
-    if (choice.target) group.add(...this.soles(choice.target, 0xf2b441));
+    const discs = choice.ranked.map((place) => ({
+      at: Terrain.inWorld(choice, place.distance, 0, place.height + 0.022),
+      color: new THREE.Color().setHSL(0.33 * Math.max(0, (place.probability - 0.9) * 10), 0.55, 0.42),
+      text: `${(100 * place.distance).toFixed(0)} cm, ${(100 * place.height).toFixed(1)} cm up: safe ${(100 * place.probability).toFixed(1)} %, margin ${(100 * place.margin).toFixed(1)} cm`,
+    }));
+    const crosses = choice.rejected.map((place) => ({
+      at: Terrain.inWorld(choice, place.distance, 0, 0.028),
+      color: new THREE.Color(0xb03a2e),
+      text: `${(100 * place.distance).toFixed(0)} cm: ${place.why.replaceAll('_', ' ')}`,
+    }));
+    const disc = new THREE.CylinderGeometry(0.012, 0.012, 0.006, 14).rotateX(Math.PI / 2);
+    this.markers = [Terrain.many(disc, discs), Terrain.many(new THREE.OctahedronGeometry(0.011), crosses)];
+    group.add(...this.markers);
+    if (choice.target) group.add(...this.soles(choice.target));
     return group;
   }
 
-  soles(target, color) {
+  // The same shape at many places, drawn at once; the text of each is found by its instance.
+  static many(geometry, places) {
+    const mesh = new THREE.InstancedMesh(geometry, kPaint.marker, places.length);
+    const move = new THREE.Matrix4();
+    places.forEach((place, i) => {
+      mesh.setMatrixAt(i, move.makeTranslation(place.at));
+      mesh.setColorAt(i, place.color);
+    });
+    mesh.userData.texts = places.map((place) => place.text);
+    return mesh;
+  }
+
+  soles(target) {
     return target.soles.map((sole) => {
-      const shape = new THREE.Mesh(new THREE.BoxGeometry(0.145, 0.05, 0.006), new THREE.MeshBasicMaterial({ color, transparent: true, opacity: 0.85 }));
-      shape.position.set(sole.p[0], sole.p[1], sole.p[2] + 0.01);
+      const shape = new THREE.Mesh(new THREE.BoxGeometry(0.145, 0.05, 0.006), kPaint.soles);
+      shape.position.set(sole.p[0], sole.p[1], sole.p[2] + 0.018);
       shape.rotation.z = sole.yaw;
       return shape;
     });
   }
 
-  planned(plan) { return line(plan.path.map((p) => new THREE.Vector3(...p)), kColors.planned, { dashed: true }); }
+  planned(plan) { return line(plan.path.map((p) => new THREE.Vector3(...p)), kPaint.planned); }
 
   // The path of the centre of mass up to a frame.
   flown(feed, index) {
@@ -180,7 +206,7 @@ export class Terrain {
       const capacity = Math.max(2048, 2 * count);
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * capacity), 3));
-      const object = new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: kColors.flown }));
+      const object = new THREE.Line(geometry, kPaint.flown);
       object.frustumCulled = false;
       this.scene.add(object);
       this.path = { object, capacity, filled: 0 };
@@ -197,6 +223,6 @@ export class Terrain {
   propose(reply) {
     this.replace('proposal', null);
     if (!reply?.plan) return;
-    this.replace('proposal', line(reply.plan.path.map((p) => new THREE.Vector3(...p)), 0xf2b441, { dashed: true }));
+    this.replace('proposal', line(reply.plan.path.map((p) => new THREE.Vector3(...p)), kPaint.proposed));
   }
 }
