@@ -57,6 +57,17 @@ void put_underfoot(TerrainProfile& profile) {
   for (std::size_t i = first; i <= last; ++i) lower_by(height, i, profile);
 }
 
+void take_over(const TerrainProfile& other, double begin, TerrainProfile& profile) {
+  for (int i = 0; i < TerrainProfile::kSamples; ++i) {
+    if (TerrainProfile::x(i) < begin) continue;
+    const auto at = static_cast<std::size_t>(i);
+    profile.lower[at] = other.lower[at];
+    profile.mean[at] = other.mean[at];
+    profile.upper[at] = other.upper[at];
+    profile.state[at] = other.state[at];
+  }
+}
+
 void raise(const JumpStretch& stretch, double height, TerrainProfile& profile) {
   for (int i = 0; i < TerrainProfile::kSamples; ++i) {
     const double x = TerrainProfile::x(i);

@@ -42,6 +42,9 @@ struct JumpStretch {
   double end = 0.0;
 };
 
+/// From `begin` on [m] the ground is what another profile says.
+void take_over(const core::TerrainProfile& other, double begin, core::TerrainProfile& profile);
+
 /// Raises `upper` within the stretch, up to a bound that the planner then keeps clear of.
 void raise(const JumpStretch& stretch, double height, core::TerrainProfile& profile);
 

@@ -104,8 +104,11 @@ core::LandingTarget target_at(const StepRules& rules, const StanceOnMap& stance,
   target.height = foothold.height;
   target.margin = foothold.margin();
   target.safe_probability = foothold.safe_probability;
+  const JumpStretch flown_over = doubted(foothold, stance, takeoff);
   target.profile = rules.profile.profile;
-  raise(doubted(foothold, stance, takeoff), rules.height_doubt, target.profile);
+  // Where the map is wrong under the soles it need not be wrong likewise where they will land.
+  take_over(rules.mapped.profile, flown_over.end, target.profile);
+  raise(flown_over, rules.height_doubt, target.profile);
   return target;
 }
 
@@ -261,12 +264,14 @@ TargetChoice LandingSelector::choose(const SeenGround& ground, const core::Robot
     choice.refusal = {Reason::terrain_unseen, "there is no map yet, or no pose to read it from"};
     return choice;
   }
-  core::TerrainProfile seen = ground.terrain.profile;
-  put_underfoot(seen);
-  const BoundedProfile profile = bound_profile(config_.profile, seen);
+  const BoundedProfile mapped = bound_profile(config_.profile, ground.terrain.profile);
+  core::TerrainProfile with_soles = ground.terrain.profile;
+  put_underfoot(with_soles);
+  const BoundedProfile profile = bound_profile(config_.profile, with_soles);
   const std::vector<Overhead> overhead = overhead_of(ground, config_.reach.body_half_width);
   const StepRules rules{.config = config_,
                         .profile = profile,
+                        .mapped = mapped,
                         .overhead = overhead,
                         .height_doubt = task.height_doubt,
                         .half_length = stance.half_length,

@@ -20,7 +20,8 @@ struct Overhead {
 /// What the terrain and the task ask of each jump along the line.
 struct StepRules {
   const FootstepConfig& config;
-  const BoundedProfile& profile;
+  const BoundedProfile& profile;  ///< With the ground underfoot where the soles are.
+  const BoundedProfile& mapped;   ///< As the map has it.
   std::span<const Overhead> overhead{};
   double height_doubt = 0.0;                                ///< Of what is flown over [m].
   double half_length = 0.0;                                 ///< Of a sole [m].

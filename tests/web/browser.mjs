@@ -9,6 +9,7 @@ const kBrowsers = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/g
 // Starts the program; resolves once its output matches, with the match.
 export function start(program, args, pattern) {
   const child = spawn(program, args, { stdio: ['ignore', 'pipe', 'pipe'] });
+  process.once('exit', () => child.kill('SIGKILL'));  // a failed test leaves nothing behind
   let output = '';
   const ended = new Promise((resolve) => { child.on('close', (code) => resolve({ code, output })); });
   const matched = new Promise((resolve, reject) => {

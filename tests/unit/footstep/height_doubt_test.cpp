@@ -71,6 +71,36 @@ TEST(PutUnderfoot, UnseenGroundStaysAsItIs) {
   EXPECT_DOUBLE_EQ(profile.mean[at(0.1)], 0.03);
 }
 
+TEST(TakeOver, LeavesWhatComesBefore) {
+  TerrainProfile profile = two_treads(0.0, 0.08);
+  take_over(two_treads(0.03, 0.05), 0.15, profile);
+  EXPECT_DOUBLE_EQ(profile.upper[at(0.1)], 0.0);
+  EXPECT_DOUBLE_EQ(profile.upper[at(0.18)], 0.03);
+  EXPECT_DOUBLE_EQ(profile.mean[at(0.3)], 0.05);
+}
+
+/// The soles stand 45 mm above (or below) all the ground that the map shows.
+class WrongUnderfoot : public testing::TestWithParam<float> {};
+
+TEST_P(WrongUnderfoot, TheTargetLiesOnTheGroundOfItsProfile) {
+  test::KnownCourse course({.blocks = {{-1.0, 3.0, 0.0}}});
+  for (core::TerrainCell& cell : course.map.cells) {
+    cell.height += GetParam();
+    cell.upper += GetParam();
+  }
+  course.look_again();
+  const core::TargetChoice choice = course.choose();
+  ASSERT_TRUE(choice.target);
+  const auto& profile = choice.target->profile;
+  EXPECT_NEAR(choice.target->height, static_cast<double>(GetParam()), 1e-6);
+  for (const double x : {-0.06, 0.0, 0.06}) {
+    EXPECT_NEAR(profile.upper[at(choice.target->distance + x)], choice.target->height, 5e-3);
+    EXPECT_NEAR(profile.upper[at(x)], 0.0, 5e-3);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(HighAndLow, WrongUnderfoot, testing::Values(-0.045F, 0.045F));
+
 TEST(HeightDoubt, TheSelectorRaisesWhatIsFlownOverAndLandsInTheMiddle) {
   const test::KnownCourse course(
       {.blocks = {{-1.0, 0.20, 0.0}, {0.25, 0.60, 0.0}, {0.65, 3.0, 0.0}}});

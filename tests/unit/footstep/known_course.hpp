@@ -17,11 +17,16 @@ inline footstep::FootstepConfig footstep_config() {
 /// Everything the selector is given, for a robot at `x` along a course.
 struct KnownCourse {
   explicit KnownCourse(const Course& course, double x = 0.0)
-      : state(standing_at(course, x, top_at(course, x, 0.0), 0.0)),
-        map(known_map(course)),
-        terrain(perception::one_step_terrain(
-            perception_config().one_step, map,
-            perception::stance_pose(perception_config().one_step, hector(), state))) {}
+      : state(standing_at(course, x, top_at(course, x, 0.0), 0.0)), map(known_map(course)) {
+    look_again();
+  }
+
+  /// The one-step terrain of the map as it is now.
+  void look_again() {
+    const perception::OneStepConfig one_step = perception_config().one_step;
+    terrain = perception::one_step_terrain(one_step, map,
+                                           perception::stance_pose(one_step, hector(), state));
+  }
 
   [[nodiscard]] core::TargetChoice choose(const footstep::LandingTask& task = {}) const {
     return footstep::LandingSelector(footstep_config(), hector())

@@ -33,7 +33,11 @@ class StepGraphTest : public ::testing::Test {
     profile_.profile.state.fill(CellState::observed);
   }
   StepRules rules(double goal_x = kInfinity) const {
-    return {.config = config_, .profile = profile_, .half_length = 0.075, .goal_x = goal_x};
+    return {.config = config_,
+            .profile = profile_,
+            .mapped = profile_,
+            .half_length = 0.075,
+            .goal_x = goal_x};
   }
 
   FootstepConfig config_ = test::footstep_config();
