@@ -60,10 +60,16 @@ msgs::RunLogHandlers into(CommandBox& box) {
   return handlers;
 }
 
+constexpr std::size_t kQueueBytes = 8U << 20U;
+
+auto onto(msgs::LiveLink& link) {
+  return [&link](const msgs::Event& event) { return link.publish(event.channel, event.bytes); };
+}
+
 }  // namespace
 
 LiveRun::LiveRun(const std::string& url, CommandBox& box)
-    : commands_(url, into(box)), events_(url), publisher_(events_) {
+    : commands_(url, into(box)), events_(url), outbox_(onto(events_), kQueueBytes) {
   receiver_ = std::thread([this] {
     constexpr int kPatience = 100;  // [ms], then look whether the run is over
     while (!closing_) commands_.receive(kPatience);

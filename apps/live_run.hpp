@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "apps/command_gate.hpp"
-#include "apps/live_publisher.hpp"
+#include "apps/outbox.hpp"
 #include "core/operator_command.hpp"
+#include "msgs/event.hpp"
 #include "msgs/live_link.hpp"
 
 namespace hopscotch::apps {
@@ -49,13 +50,14 @@ class LiveRun {
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
 
-  void publish(const msgs::Event& event) { publisher_.publish(event); }
-  [[nodiscard]] LivePublisher::Counts counts() const { return publisher_.counts(); }
+  /// Never waits for the network.
+  void publish(const msgs::Event& event) { outbox_.put(event, event.bytes.size()); }
+  [[nodiscard]] Outbox<msgs::Event>::Counts counts() const { return outbox_.counts(); }
 
  private:
   msgs::LiveLink commands_;
   msgs::LiveLink events_;  ///< Apart, so that a burst of events cannot crowd out a command.
-  LivePublisher publisher_;
+  Outbox<msgs::Event> outbox_;
   std::atomic<bool> closing_{false};
   std::thread receiver_;
 };

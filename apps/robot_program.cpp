@@ -84,8 +84,8 @@ hardware::PlantPorts RobotProgram::make_ports() {
 
 bool RobotProgram::ranges_agree() {
   const hardware::RangeCheckResult check = hardware::check_ranges(config_.topology, make_ports());
-  std::printf("robot: ranges of %d drives read back and right, %d drives cannot tell theirs\n",
-              check.read, check.cannot_tell);
+  console_.say("robot: ranges of %d drives read back and right, %d drives cannot tell theirs",
+               check.read, check.cannot_tell);
   if (check.problem.empty()) return true;
   std::fprintf(stderr, "robot: refused: %s\n", check.problem.c_str());
   return false;
@@ -110,11 +110,10 @@ void RobotProgram::start_time() {
 
 ExitStatus RobotProgram::run(const std::atomic<bool>& interrupted) {
   start_time();
-  std::printf("robot: run %s, %zu buses at %.0f Hz, time %s%s\n", run_id_text(run_id_).c_str(),
-              buses_.size(), config_.topology.rate,
-              step_ ? "in lock-step with the emulated drives" : "by the clock",
-              wire_ == Wire::listen ? ", drives stay off" : "");
-  std::fflush(stdout);
+  console_.say("robot: run %s, %zu buses at %.0f Hz, time %s%s", run_id_text(run_id_).c_str(),
+               buses_.size(), config_.topology.rate,
+               step_ ? "in lock-step with the emulated drives" : "by the clock",
+               wire_ == Wire::listen ? ", drives stay off" : "");
   if (!ranges_agree()) return ExitStatus::answer_is_no;
   while (!world_gone_) {
     if (interrupted && !finishing_) {
@@ -132,7 +131,7 @@ ExitStatus RobotProgram::run(const std::atomic<bool>& interrupted) {
   // Once more with the drives off, so that they hear it.
   session_.tick();
   session_.tick();
-  std::printf("robot: stopped, drives off, after %.3f s\n", now_.seconds());
+  console_.say("robot: stopped, drives off, after %.3f s", now_.seconds());
   print_counters();
   return ExitStatus::ok;
 }
@@ -152,8 +151,7 @@ void RobotProgram::attend() {
       if (said.command.sequence != 0) send(said);
     }
     if (const std::optional<core::Refusal> refusal = brain_->take_refusal()) {
-      std::printf("robot: %.3f s: no jump: %s; it holds\n", now_.seconds(),
-                  refusal->text().c_str());
+      console_.say("robot: %.3f s: no jump: %s; it holds", now_.seconds(), refusal->text().c_str());
     }
     // The mission's end by the operator's stop: the robot stands, its drives go off.
     if (brain_->pipeline().end() == MissionEnd::stopped && !finishing_) {
@@ -224,12 +222,11 @@ void RobotProgram::answer(const core::OperatorCommand& command, const core::Refu
 }
 
 void RobotProgram::send(const core::OperatorAnswer& said) {
-  std::printf("robot: %.3f s: operator's %s: %s\n", now_.seconds(),
-              said.command.mode == ModeRequest::none
-                  ? "target"
-                  : std::string(core::mode_request_name(said.command.mode)).c_str(),
-              said.accepted() ? "accepted" : said.refusal.text().c_str());
-  std::fflush(stdout);
+  console_.say("robot: %.3f s: operator's %s: %s", now_.seconds(),
+               said.command.mode == ModeRequest::none
+                   ? "target"
+                   : std::string(core::mode_request_name(said.command.mode)).c_str(),
+               said.accepted() ? "accepted" : said.refusal.text().c_str());
   publish(ack_of(now_, said));
 }
 
@@ -261,16 +258,14 @@ void RobotProgram::tell_progress() {
   if (stage != told_stage_) {
     const bool fault =
         stage == SessionStage::stopping && session_.fault().reason != Reason::stopped_by_user;
-    std::printf("robot: %.3f s: %s%s\n", now_.seconds(),
-                std::string(session_stage_name(stage)).c_str(),
-                fault ? (", fault " + fault_text()).c_str() : "");
-    std::fflush(stdout);
+    console_.say("robot: %.3f s: %s%s", now_.seconds(),
+                 std::string(session_stage_name(stage)).c_str(),
+                 fault ? (", fault " + fault_text()).c_str() : "");
     told_stage_ = stage;
   }
   if (brain_ && brain_->jumps() != told_jumps_) {
     told_jumps_ = brain_->jumps();
-    std::printf("robot: %.3f s: jump %d has landed\n", now_.seconds(), told_jumps_);
-    std::fflush(stdout);
+    console_.say("robot: %.3f s: jump %d has landed", now_.seconds(), told_jumps_);
   }
   constexpr double kEvery = 1.0;  // [s]
   if (wire_ == Wire::listen && now_.since(printed_) >= kEvery) {
@@ -279,29 +274,28 @@ void RobotProgram::tell_progress() {
   }
 }
 
-void RobotProgram::print_counters() const {
+void RobotProgram::print_counters() {
   const hardware::PlantCounters& wire = plant_.counters();
   const auto number = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
-  std::printf(
+  console_.say(
       "robot: %llu exchanges, %llu late; answers: %llu taken, %llu missing, %llu malformed, "
       "%llu from the wrong drive, %llu implausible; frames not taken %llu, bus errors %llu, "
-      "foreign commands %llu\n",
+      "foreign commands %llu",
       number(wire.exchanges), number(session_.deadlines().late), number(wire.replies),
       number(wire.lost_replies), number(wire.malformed), number(wire.wrong_sender),
       number(wire.implausible), number(wire.not_sent), number(wire.bus_errors),
       number(wire.foreign));
 }
 
-void RobotProgram::print_joints() const {
+void RobotProgram::print_joints() {
   for (int joint = 0; joint < core::kJoints; ++joint) {
     const hardware::DriveReport& drive = plant_.drives()[static_cast<std::size_t>(joint)];
-    std::printf("  %-16s %+8.4f rad  %5.1f degC  %s\n", hardware::joint_name(joint).c_str(),
-                session_.readings().q[joint], drive.temperature_degC,
-                drive.heard ? "answers" : "does not answer");
+    console_.say("  %-16s %+8.4f rad  %5.1f degC  %s", hardware::joint_name(joint).c_str(),
+                 session_.readings().q[joint], drive.temperature_degC,
+                 drive.heard ? "answers" : "does not answer");
   }
   const std::string obstacle = session_.obstacle();
-  std::printf("  %s\n", obstacle.empty() ? "home: could be enabled" : obstacle.c_str());
-  std::fflush(stdout);
+  console_.say("  %s", obstacle.empty() ? "home: could be enabled" : obstacle.c_str());
 }
 
 }  // namespace hopscotch::apps

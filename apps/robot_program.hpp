@@ -1,5 +1,7 @@
 #pragma once
 
+#include <unistd.h>
+
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -11,6 +13,7 @@
 
 #include "apps/command_gate.hpp"
 #include "apps/commands.hpp"
+#include "apps/console.hpp"
 #include "apps/depth_inbox.hpp"
 #include "apps/live_run.hpp"
 #include "apps/real_time.hpp"
@@ -67,12 +70,13 @@ class RobotProgram {
   void publish(const Value& value);
   void tell_progress();
   void tell_status();
-  void print_joints() const;
-  void print_counters() const;
+  void print_joints();
+  void print_counters();
   [[nodiscard]] std::string fault_text() const;
 
   RobotConfig config_;
   Wire wire_;
+  Console console_{STDOUT_FILENO};
   std::vector<hardware::CanBus> buses_;
   hardware::SerialImu imu_;
   std::optional<StepGranter> step_;   ///< In lock-step ...

@@ -1,0 +1,106 @@
+#include "apps/outbox.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "apps/console.hpp"
+#include "apps/live_run.hpp"
+
+namespace hopscotch::apps {
+namespace {
+
+TEST(Outbox, DeliversInOrderBeforeItGoes) {
+  std::vector<int> got;
+  {
+    Outbox<int> outbox(
+        [&got](int item) {
+          got.push_back(item);
+          return true;
+        },
+        1000);
+    for (int i = 0; i < 100; ++i) outbox.put(i, 1);
+  }
+  ASSERT_EQ(got.size(), 100U);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(got[static_cast<std::size_t>(i)], i);
+}
+
+TEST(Outbox, CountsWhatIsSentAndWhatFails) {
+  Outbox<bool> outbox([](bool well) { return well; }, 1000);
+  for (const bool well : {true, false, true}) outbox.put(well, 1);
+  while (outbox.counts().sent + outbox.counts().failed < 3) std::this_thread::yield();
+  EXPECT_EQ(outbox.counts().sent, 2U);
+  EXPECT_EQ(outbox.counts().failed, 1U);
+}
+
+TEST(Outbox, DropsAndCountsWhatDoesNotFitIntoTheQueue) {
+  Outbox<int> outbox([](int) { return true; }, 50);
+  outbox.put(1, 51);
+  EXPECT_EQ(outbox.counts().dropped, 1U);
+}
+
+/// Both ends of a pipe.
+struct Pipe {
+  Pipe() { EXPECT_EQ(pipe(ends.data()), 0); }
+  ~Pipe() {
+    for (const int end : ends) close(end);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  std::array<int, 2> ends{};
+};
+
+TEST(Console, WritesWholeLines) {
+  const Pipe pipe;
+  { Console(pipe.ends[1]).say("jump %d of %s", 3, "five"); }
+  std::array<char, 100> text{};
+  const ssize_t length = read(pipe.ends[0], text.data(), text.size());
+  ASSERT_GT(length, 0);
+  EXPECT_EQ(std::string(text.data(), static_cast<std::size_t>(length)), "jump 3 of five\n");
+}
+
+TEST(Console, NobodyWaitsForATerminalThatTakesNothing) {
+  const Pipe pipe;
+  const std::string page(4096, 'x');
+  fcntl(pipe.ends[1], F_SETFL, O_NONBLOCK);
+  while (write(pipe.ends[1], page.data(), page.size()) > 0) {
+  }
+  fcntl(pipe.ends[1], F_SETFL, 0);  // as a terminal is: a write waits
+  Console console(pipe.ends[1]);
+  console.say("lost");
+  for (int i = 0; i < 10000; ++i) console.say("%s", page.c_str());
+  EXPECT_GT(console.counts().dropped, 0U);
+  EXPECT_EQ(console.counts().sent, 0U);
+}
+
+TEST(CommandBox, IsBounded) {
+  CommandBox box;
+  int taken = 0;
+  while (box.put({}) && taken < 1000) ++taken;
+  EXPECT_EQ(taken, 64);
+  EXPECT_EQ(box.take_all().size(), 64U);
+  EXPECT_TRUE(box.take_all().empty());
+  EXPECT_TRUE(box.put({}));
+}
+
+TEST(Acks, TellTheChannelTheCommandCameOn) {
+  core::OperatorAnswer answer;
+  answer.command.sequence = 9;
+  answer.remark = "it jumps now";
+  EXPECT_EQ(ack_of({}, answer).channel, "HOP_TARGET_CMD");
+  EXPECT_EQ(ack_of({}, answer).refusal.sentence, "it jumps now");
+  answer.command.mode = core::ModeRequest::hold;
+  answer.refusal = {core::Reason::not_now, "no"};
+  const msgs::Ack ack = ack_of({}, answer);
+  EXPECT_EQ(ack.channel, "HOP_COMMAND_CMD");
+  EXPECT_EQ(ack.command_sequence, 9U);
+  EXPECT_FALSE(ack.accepted);
+  EXPECT_EQ(ack.refusal.sentence, "no");
+}
+
+}  // namespace
+}  // namespace hopscotch::apps
