@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/check.hpp"
@@ -71,6 +72,25 @@ struct Case {
   core::RobotState state = standing();
 };
 
+/// Five times as wide and high, up to 160x120: each pixel becomes a square.
+void enlarge(core::DepthFrame& frame) {
+  constexpr int kTimes = 5;
+  core::CameraIntrinsics& lens = frame.intrinsics;
+  if (lens.width <= 0 || lens.height <= 0 || lens.width > 32 || lens.height > 24) return;
+  const std::vector<float> small = std::move(frame.depth);
+  const int small_width = lens.width;
+  lens.width *= kTimes;
+  lens.height *= kTimes;
+  for (double* const number : {&lens.fx, &lens.fy, &lens.cx, &lens.cy}) *number *= kTimes;
+  frame.depth.clear();
+  for (int v = 0; v < lens.height; ++v) {
+    for (int u = 0; u < lens.width; ++u) {
+      const int at = v / kTimes * small_width + u / kTimes;
+      frame.depth.push_back(small[static_cast<std::size_t>(at)]);
+    }
+  }
+}
+
 Case make_case(Input& input) {
   Case result;
   core::CameraIntrinsics& lens = result.frame.intrinsics;
@@ -107,6 +127,8 @@ Case make_case(Input& input) {
   while (!input.empty()) result.frame.depth.push_back(input.take<float>());
   const int pixels = std::max(0, lens.width) * std::max(0, lens.height);
   if (!wrong_size) result.frame.depth.resize(static_cast<std::size_t>(pixels), 0.8F);
+  const bool to_full_size = (hostile >> 30U & 1U) != 0;
+  if (to_full_size && !wrong_size) enlarge(result.frame);
   return result;
 }
 
