@@ -65,13 +65,14 @@ std::vector<Run> level_runs(const OneStepConfig& config, const std::vector<Slice
   return runs;
 }
 
+constexpr double kStepShare = 0.04;  // of a cell's variance, see below
+
 /// Variance of a height averaged over the end of a tread, as far as it counts for a step: what all
 /// frames share lifts both sides of a step alike, and a cell's own error averages out over the end.
 double end_variance(const std::vector<Slice>& slices, const Run& run) {
-  constexpr double kShare = 0.04;
   double sum = 0.0;
   for (std::size_t i = run.first; i <= run.last; ++i) sum += slices[i].variance;
-  return kShare * sum / static_cast<double>(run.last - run.first + 1);
+  return kStepShare * sum / static_cast<double>(run.last - run.first + 1);
 }
 
 double mean_height(const std::vector<Slice>& slices, std::size_t first, std::size_t last) {
@@ -93,6 +94,13 @@ bool contains_blind(const std::vector<Slice>& slices, const Tread& before, const
   return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
     return slice.x > before.end && slice.x < behind.start && slice.kind == SliceKind::blind;
   });
+}
+
+/// Standard deviation of the step between two treads [m]. Behind the blind strip lies what is known
+/// by the soles: it shares no error with what is seen, and its own does not average out.
+double step_sigma(const std::vector<Slice>& slices, const Tread& before, const Tread& behind) {
+  const double variance = before.variance + behind.variance;
+  return std::sqrt(contains_blind(slices, before, behind) ? variance / kStepShare : variance);
 }
 
 /// Joins treads of one level across holes that are no gap and across the blind strip.
@@ -206,7 +214,7 @@ std::vector<double> list_features(const OneStepConfig& config, const std::vector
                 .start = here.start ? here.start->x : treads[i + 1].start,
                 .sigma = config.edge_sigma},
                terrain);
-    step_sigmas.resize(terrain.edge_count, std::sqrt(treads[i].variance + treads[i + 1].variance));
+    step_sigmas.resize(terrain.edge_count, step_sigma(slices, treads[i], treads[i + 1]));
   }
   if (treads.empty()) return step_sigmas;
   const std::optional<EdgeLine>& last = line.breaks.back().end;
