@@ -14,6 +14,9 @@ JointGains JointGains::load(const core::ConfigReader& section) {
   gains.placement_time = section.number("placement_time_s", Range::closed(0.0, 0.5));
   gains.placement_dead = section.number("placement_dead_mps", Range::not_negative());
   gains.placement_max = section.number("placement_max_m", Range::closed(0.0, 0.15));
+  gains.stretch_per_turn = section.number("stretch_per_turn_m_rad", Range::not_negative());
+  gains.stretch_dead = section.number("stretch_dead_rad", Range::not_negative());
+  gains.stretch_max = section.number("stretch_max_m", Range::closed(0.0, 0.1));
   section.finish();
   return gains;
 }

@@ -12,14 +12,17 @@ namespace hopscotch::control {
 
 /// Joint PD of eq. (15), one leg; both legs have the same.
 struct JointGains {
-  core::LegVector kp;            ///< [N·m/rad]
-  core::LegVector kd;            ///< [N·m·s/rad]
-  double compliant_scale = 0.0;  ///< Factor on both where the MPC bears the load (landing, stand).
-  double fallback_scale = 0.0;   ///< The same once the MPC has no fresh answer.
-  double flight_share = 0.0;     ///< Of the trunk's deviation in flight that the hips take up.
-  double placement_time = 0.0;   ///< Feet go so much further per excess speed of the CoM [s].
-  double placement_dead = 0.0;   ///< Smaller deviations of that speed are left to the MPC [m/s].
-  double placement_max = 0.0;    ///< Of the feet beside their planned place [m].
+  core::LegVector kp;             ///< [N·m/rad]
+  core::LegVector kd;             ///< [N·m·s/rad]
+  double compliant_scale = 0.0;   ///< Factor on both where the MPC bears the load (landing, stand).
+  double fallback_scale = 0.0;    ///< The same once the MPC has no fresh answer.
+  double flight_share = 0.0;      ///< Of the trunk's deviation in flight that the hips take up.
+  double placement_time = 0.0;    ///< Feet go so much further per excess speed of the CoM [s].
+  double placement_dead = 0.0;    ///< Smaller deviations of that speed are left to the MPC [m/s].
+  double placement_max = 0.0;     ///< Of the feet beside their planned place [m].
+  double stretch_per_turn = 0.0;  ///< Legs reach down in flight by this much more per turn [m/rad]
+  double stretch_dead = 0.0;      ///< of the trunk beyond this beside the plan [rad],
+  double stretch_max = 0.0;       ///< at most [m].
 
   static JointGains load(const core::ConfigReader& section);
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "control/disturbed_flight.hpp"
 #include "control/torque_law.hpp"
 #include "model/gravity.hpp"
 #include "model/kinematics.hpp"
@@ -80,59 +81,6 @@ core::RobotState extrapolate(const core::RobotState& state, double delay, const 
   if (angle > 0.0) later.R_WB = Eigen::AngleAxisd(angle, turn / angle) * state.R_WB;
   later.q += 0.5 * delay * (state.dq + later.dq);
   return later;
-}
-
-/// What exceeds `dead` of a deviation.
-double beyond(double deviation, double dead) {
-  return std::copysign(std::max(0.0, std::abs(deviation) - dead), deviation);
-}
-
-/// The trunk comes down leaning otherwise than planned, e.g. after a push in flight. Righting it at
-/// once would throw the body up and over: the plan's lean is approached within `kLeanTime`, the
-/// legs as planned.
-/// @param pitch At touchdown [rad]. @param[in,out] plan Its landing is changed.
-void lean_landing(double pitch, core::JumpPlan& plan) {
-  constexpr double kLeanDead = 0.1;   // touchdowns of undisturbed jumps scatter so much [rad]
-  constexpr double kLeanTime = 0.25;  // [s]
-  const double lean = beyond(pitch - sample_plan(plan, plan.touchdown_time).rpy.y(), kLeanDead);
-  for (std::size_t i = 0; i < plan.knot_count; ++i) {
-    core::JumpKnot& knot = plan.knots[i];
-    const double s = (knot.time - plan.touchdown_time) / kLeanTime;
-    if (lean == 0.0 || knot.phase != core::JumpPhase::landing || s >= 1.0) continue;
-    const double angle = lean * (1.0 + s * s * (2.0 * s - 3.0));
-    const double rate = lean / kLeanTime * 6.0 * s * (s - 1.0);
-    const Eigen::AngleAxisd heading(knot.rpy.z(), Eigen::Vector3d::UnitZ());
-    knot.rpy.y() += angle;
-    knot.w_WB += heading * Eigen::Vector3d(0.0, rate, 0.0);
-    for (const core::Leg leg : core::kAllLegs) {
-      knot.q[core::joint_index(leg, core::Joint::hip_pitch)] -= angle;
-      knot.dq[core::joint_index(leg, core::Joint::hip_pitch)] -= rate;
-    }
-  }
-}
-
-/// A CoM that flies faster than planned, after a push or a slip, needs the feet further on when it
-/// lands: by the speed times the time constant of the pendulum it then is. The legs turn about the
-/// hips, the ankles keep the soles level.
-/// @param planned Where the body should be now.
-void place_feet(const JointGains& gains, const model::RobotParameters& robot,
-                const core::RobotState& state, const core::JumpKnot& planned,
-                core::JointVector& q) {
-  const Eigen::AngleAxisd in_S(-planned.rpy.z(), Eigen::Vector3d::UnitZ());
-  const Eigen::Vector3d excess = in_S * (model::composite_body(robot, state).v_WG - planned.v_WG);
-  const double length =
-      planned.p_WB.z() - mid_sole(model::sole_poses(robot, model::state_of(planned))).z();
-  const auto angle = [&](double speed) {
-    const double shift = gains.placement_time * beyond(speed, gains.placement_dead);
-    return std::clamp(shift, -gains.placement_max, gains.placement_max) / length;
-  };
-  const double forward = angle(excess.x());
-  const double left = angle(excess.y());
-  for (const core::Leg leg : core::kAllLegs) {
-    q[core::joint_index(leg, core::Joint::hip_pitch)] -= forward;
-    q[core::joint_index(leg, core::Joint::ankle)] += forward;
-    q[core::joint_index(leg, core::Joint::hip_roll)] += left;
-  }
 }
 
 }  // namespace
@@ -246,10 +194,11 @@ void ControlTick::enter_phase(const core::RobotState& state) noexcept {
   } else if (phase() == RobotPhase::landing && (is_falling_ || was_hopping_)) {
     settle(state, catch_time(state));
     impact_pending_ = true;
+    shape_pending_ = false;
   } else if (phase() == RobotPhase::landing) {
     const bool follows = config_.ablation != core::Ablation::no_landing_plan;
     touchdown_ = state.stamp;
-    lean_landing(model::rpy_from_rotation(state.R_WB).y(), plan_);
+    shape_pending_ = shape_landing(robot_, state, plan_);
     start_ = state.stamp.after(
         -((follows ? plan_.touchdown_time : plan_.duration) + config_.actuation_delay));
   }
@@ -257,13 +206,21 @@ void ControlTick::enter_phase(const core::RobotState& state) noexcept {
       phase() == RobotPhase::flight && core::is_standing(before) && !supervisor_.is_hopping();
 }
 
-/// The impact of a fall is over: the feet have lost their speed and taken some of the trunk's, so
-/// that the plan made before it would sink too far and bounce.
+/// The impact of a fall, or of a landing that is not as planned, is over: the feet have lost their
+/// speed and taken some of the trunk's, so that the plan made before it would sink too far and
+/// bounce.
 void ControlTick::settle_again(const core::RobotState& state) noexcept {
   constexpr double kImpactTime = 0.015;  // [s]
-  if (!impact_pending_ || state.stamp.since(touchdown_) < kImpactTime) return;
-  impact_pending_ = false;
-  if (phase() == RobotPhase::landing) settle(state, catch_time(state));
+  if (!impact_pending_ && !shape_pending_) return;
+  if (state.stamp.since(touchdown_) < kImpactTime) return;
+  const bool falling = impact_pending_;
+  impact_pending_ = shape_pending_ = false;
+  if (phase() != RobotPhase::landing) return;
+  if (falling) {
+    settle(state, catch_time(state));
+  } else if (config_.ablation != core::Ablation::no_landing_plan) {
+    shape_after_impact(robot_, state, command_time(state.stamp) - config_.actuation_delay, plan_);
+  }
 }
 
 /// A body whose capture point has left the soles falls, wherever the soles push: they have to be
@@ -371,18 +328,12 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
   command.kp << scale * config_.gains.kp, scale * config_.gains.kp;
   command.kd << scale * config_.gains.kd, scale * config_.gains.kd;
   if (phase() != RobotPhase::flight) return;
-  // In flight nothing can right the trunk, but the feet can still meet the ground level and where
-  // the CoM needs them: the hips take up more than the trunk's deviation, the ankles give it back.
-  const core::JumpKnot now = sample_plan(plan_, time - config_.actuation_delay);
-  const Eigen::Vector3d rpy = model::rpy_from_rotation(state.R_WB);
-  const double pitch = rpy.y() - now.rpy.y();
-  const double share = config_.gains.flight_share;
-  for (const core::Leg leg : core::kAllLegs) {
-    command.q[core::joint_index(leg, core::Joint::hip_pitch)] -= share * pitch;
-    command.q[core::joint_index(leg, core::Joint::ankle)] -= (1.0 - share) * pitch;
-    command.q[core::joint_index(leg, core::Joint::hip_roll)] -= rpy.x() - now.rpy.x();
+  const double body_time = time - config_.actuation_delay;
+  if (is_falling_) {
+    keep_soles(config_.gains, state, sample_plan(plan_, body_time), command.q);
+  } else {
+    aim_legs(config_.gains, robot_, state, plan_, body_time, command.q);
   }
-  if (!is_falling_) place_feet(config_.gains, robot_, state, now, command.q);
 }
 
 ContactExpectation ControlTick::expected_contact() const noexcept {

@@ -136,6 +136,7 @@ class ControlTick {
   PlanPlacement placement_;
   bool is_falling_ = false;      ///< In flight without a jump.
   bool impact_pending_ = false;  ///< Of the end of a fall.
+  bool shape_pending_ = false;   ///< Of a landing that was not as planned.
   bool was_hopping_ = false;     ///< At the end of the last tick.
   DelayEstimator delays_;
   core::RobotState state_;
