@@ -332,7 +332,7 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
   if (is_falling_) {
     keep_soles(config_.gains, state, sample_plan(plan_, body_time), command.q);
   } else {
-    aim_legs(config_.gains, robot_, state, plan_, body_time, command.q);
+    aim_legs(config_.gains, robot_, state, {plan_, body_time}, command.q);
   }
 }
 

@@ -74,12 +74,12 @@ void place_feet(const JointGains& gains, const model::RobotParameters& robot,
 
 /// How far the legs reach down beside the plan at a time of it, for a trunk that has turned beside
 /// the plan by `turned` [rad]: 0 to `stretch_max` [m].
-double stretch_in_flight(const JointGains& gains, const core::JumpPlan& plan, double time,
-                         double turned) {
+double stretch_in_flight(const JointGains& gains, const PlanMoment& moment, double turned) {
   // Before, the soles are on their way over the ground.
   constexpr double kFrom = 0.5;  // of the flight
   constexpr double kTo = 0.75;   // all of it
-  const double flown = (time - plan.liftoff_time) / (plan.touchdown_time - plan.liftoff_time);
+  const double flown = (moment.time - moment.plan.liftoff_time) /
+                       (moment.plan.touchdown_time - moment.plan.liftoff_time);
   const double share = std::clamp((flown - kFrom) / (kTo - kFrom), 0.0, 1.0);
   const double wanted = gains.stretch_per_turn * std::abs(beyond(turned, gains.stretch_dead));
   return share * std::min(wanted, gains.stretch_max);
@@ -144,15 +144,15 @@ void keep_soles(const JointGains& gains, const core::RobotState& state,
 }
 
 void aim_legs(const JointGains& gains, const model::RobotParameters& robot,
-              const core::RobotState& state, const core::JumpPlan& plan, double time,
+              const core::RobotState& state, const PlanMoment& moment,
               core::JointVector& q) noexcept {
-  const core::JumpKnot planned = sample_plan(plan, time);
+  const core::JumpKnot planned = sample_plan(moment.plan, moment.time);
   const double pitch = model::rpy_from_rotation(state.R_WB).y();
   const double turned = pitch - planned.rpy.y();
   keep_soles(gains, state, planned, q);
   place_feet(gains, robot, state, planned, q);
   core::JointVector unused = core::JointVector::Zero();
-  const Stretch down{stretch_in_flight(gains, plan, time, turned), 0.0};
+  const Stretch down{stretch_in_flight(gains, moment, turned), 0.0};
   stretch_legs(robot, pitch, down, q, unused);
   spare_hip_stops(robot, q);
 }

@@ -17,12 +17,17 @@ namespace hopscotch::control {
 void keep_soles(const JointGains& gains, const core::RobotState& state,
                 const core::JumpKnot& planned, core::JointVector& q) noexcept;
 
+/// Where the body is in the plan that it follows.
+struct PlanMoment {
+  const core::JumpPlan& plan;
+  double time;  ///< [s]
+};
+
 /// The legs of a flight that does not go as planned: soles level and where the CoM needs them; legs
 /// stretched towards the ground when the trunk turns too far, so that it turns for less time.
-/// @param time Of the plan, as the body lives it [s].
 /// @param[in,out] q Planned angles for the commanded moment [rad].
 void aim_legs(const JointGains& gains, const model::RobotParameters& robot,
-              const core::RobotState& state, const core::JumpPlan& plan, double time,
+              const core::RobotState& state, const PlanMoment& moment,
               core::JointVector& q) noexcept;
 
 /// Begins the landing with the lean and the height above the soles that the robot came down with,

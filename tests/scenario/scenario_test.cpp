@@ -180,6 +180,60 @@ TEST(Scenario, SameSeedSameRun) {
   EXPECT_EQ(to_json(first), to_json(second));
 }
 
+/// Five leaps on level ground with less of an MPC; how many ticks on the ground after touchdown
+/// held the joints stiffly, as without an answer of it.
+struct Hindered {
+  RunResult result;
+  int unanswered = 0;
+  int answered = 0;
+};
+Hindered leap_hindered(int iteration_cap, double latency) {
+  RunRequest request = request_of(
+      sim::Scenario::load(std::string(kConfig) + "scenarios/flat-leaps.yaml"), Eyes::truth, 4711);
+  request.config.control.wrench_mpc.tolerances.iteration_cap = iteration_cap;
+  request.config.runtime.mpc_latency = request.config.control.mpc_delay = latency;
+  const double stiff = request.config.control.gains.fallback_scale;
+  constexpr auto kKnee = core::joint_index(core::Leg::left, core::Joint::knee);
+  const double knee = request.config.control.gains.kp[kKnee];
+  Hindered hindered;
+  LockstepRun run(request);
+  while (run.step([&](const TickRecord& tick) {
+    if (tick.status.phase != core::RobotPhase::landing) return;
+    const double kp = tick.command.kp[kKnee];
+    ++(kp > 0.99 * stiff * knee ? hindered.unanswered : hindered.answered);
+  })) {
+  }
+  hindered.result = run.result();
+  return hindered;
+}
+
+void expect_five_leaps(const RunResult& result) {
+  EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
+  EXPECT_EQ(result.falls, 0);
+  ASSERT_EQ(result.jumps.size(), 5U);
+  for (const JumpResult& jump : result.jumps) EXPECT_EQ(jump.outcome, JumpOutcome::landed);
+}
+
+TEST(Scenario, JumpsAreLandedWithoutAnyAnswerOfTheMpc) {
+  const Hindered none = leap_hindered(1, 0.001);  // nothing is solved in one iteration
+  expect_five_leaps(none.result);
+  EXPECT_GT(none.unanswered, 500);
+  EXPECT_LT(none.answered, 5 * 30);  // until the lack of an answer shows
+}
+
+TEST(Scenario, JumpsAreLandedWithAnAnswerNowAndThen) {
+  const Hindered some = leap_hindered(7, 0.001);
+  expect_five_leaps(some.result);
+  EXPECT_GT(some.unanswered, 0);
+  EXPECT_GT(some.answered, 200);
+}
+
+TEST(Scenario, JumpsAreLandedWithALateMpc) {
+  const Hindered late = leap_hindered(30, 0.020);
+  expect_five_leaps(late.result);
+  EXPECT_GT(late.answered, 500);
+}
+
 TEST(Scenario, AHardPushInFlightIsSeenAsAFall) {
   const RunResult result = run_text(
       "name: pushed-over\n"

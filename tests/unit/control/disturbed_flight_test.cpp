@@ -45,7 +45,7 @@ class DisturbedFlight : public ::testing::Test {
   }
   [[nodiscard]] core::JointVector aimed(double time, double turned) const {
     core::JointVector q = sample_plan(plan_, time).q;
-    aim_legs(gains_, robot_, flying(time, turned), plan_, time, q);
+    aim_legs(gains_, robot_, flying(time, turned), {plan_, time}, q);
     return q;
   }
   [[nodiscard]] core::RobotState with(core::RobotState state, const core::JointVector& q) const {
@@ -116,7 +116,7 @@ TEST_F(DisturbedFlight, ATrunkThatTurnsTooFarMeetsTheGroundEarlier) {
     JointGains unstretched = gains_;
     unstretched.stretch_max = 0.0;
     core::JointVector q = sample_plan(plan_, time).q;
-    aim_legs(unstretched, robot_, flying(time, turned), plan_, time, q);
+    aim_legs(unstretched, robot_, flying(time, turned), {plan_, time}, q);
     const Eigen::AngleAxisd in_W(sample_plan(plan_, time).rpy.y() + turned,
                                  Eigen::Vector3d::UnitY());
     return (in_W * (reach(q) - reach(aimed(time, turned)))).eval();
