@@ -4,7 +4,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 // Shares of the screen's resolution: a machine without a graphics card keeps pace at a lower one.
 const kSharpness = [1, 0.7, 0.5];
-const kSlowPicture = 1 / 28;  // [s]
+const kSlowPicture = 1 / 32;  // [s]
 
 function drawnBySoftware() {
   const gl = document.createElement('canvas').getContext('webgl2');
