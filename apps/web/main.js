@@ -105,8 +105,7 @@ class Page {
       this.terrain.flown(feed, index);
       this.tell(before, index);
     }
-    this.stage.draw(seconds, moving);
-    this.pictures += 1;
+    if (this.stage.draw(seconds, moving)) this.pictures += 1;
     document.body.dataset.pictures = this.pictures;
   }
 

@@ -59,15 +59,17 @@ export class Stage {
   // Draws what has changed: sharp when it stands still, else as sharp as keeps thirty pictures a second.
   // @param seconds since this was last asked for
   // @param moving whether the scene has changed
+  // @return whether there was anything to draw
   draw(seconds, moving) {
     const turned = this.controls.update();
-    if (!moving && !turned && !this.stale) return;
     const still = !moving && !turned;
+    if (still && !this.stale) return false;
     if (!still) this.keepPace(seconds);
     const ratio = kSharpness[still ? 0 : this.level] * Math.min(window.devicePixelRatio, 2);
     if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
     this.renderer.render(this.scene, this.camera);
     this.stale = !still;  // once more, sharp, when it has come to rest
+    return true;
   }
 
   keepPace(seconds) {

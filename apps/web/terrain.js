@@ -39,7 +39,10 @@ function slabMesh(slab, floor) {
 }
 
 function free(object) {
-  object.traverse((part) => part.geometry?.dispose());
+  object.traverse((part) => {
+    part.geometry?.dispose();
+    part.dispose?.();  // what instances hold
+  });
   object.removeFromParent();
 }
 
