@@ -82,11 +82,11 @@ Prepared prepare(const RunOptions& options) {
 
 /// Live channels are for runs that somebody watches. Without --lcm they are a convenience: a
 /// machine that cannot carry them runs without.
-std::unique_ptr<LiveRun> open_live(const RunOptions& options, CommandBox& box) {
+std::unique_ptr<LiveRun> open_live(const RunOptions& options, std::uint64_t id, CommandBox& box) {
   const bool paced = options.pace > 0.0 || options.view || options.serve || options.threads;
   if (!options.lcm && !paced) return nullptr;
   try {
-    return std::make_unique<LiveRun>(live_url(), box);
+    return std::make_unique<LiveRun>(live_url(), box, id);
   } catch (const msgs::LiveUnavailable& error) {
     if (options.lcm) throw;
     std::fprintf(stderr, "hopscotch: %s. The run goes on without them.\n", error.what());
@@ -115,7 +115,7 @@ struct Watchers {
 Watchers open_watchers(const RunOptions& options, std::uint64_t id, const RunRequest& request,
                        CommandBox& box) {
   Watchers watchers;
-  watchers.live = open_live(options, box);
+  watchers.live = open_live(options, id, box);
   if (options.serve) watchers.page = std::make_unique<WebRun>(options.port, id, request, box);
   if (options.view) watchers.window = std::make_unique<LiveView>(request);
   return watchers;

@@ -3,18 +3,20 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <string_view>
 
 namespace hopscotch::apps {
 
 namespace {
 
 constexpr std::size_t kQueueBytes = 64U << 10U;
+constexpr std::size_t kQueueLines = 256;
 constexpr int kPatience_ms = 500;
 
-bool write_line(int descriptor, const std::string& line) {
+bool write_line(int descriptor, std::string_view line) {
   std::size_t written = 0;
   while (written < line.size()) {
     pollfd ready{.fd = descriptor, .events = POLLOUT, .revents = 0};
@@ -30,19 +32,22 @@ bool write_line(int descriptor, const std::string& line) {
 }  // namespace
 
 Console::Console(int descriptor)
-    : outbox_([descriptor](const std::string& line) { return write_line(descriptor, line); },
-              kQueueBytes) {}
+    : outbox_(
+          [descriptor](const Line& line) {
+            return write_line(descriptor, {line.text.data(), line.size});
+          },
+          {.bytes = kQueueBytes, .items = kQueueLines}) {}
 
 void Console::say(const char* format, ...) {
-  std::array<char, 1024> text{};
+  Line line;
   va_list values;
   va_start(values, format);
-  std::vsnprintf(text.data(), text.size() - 1, format, values);
+  const int length = std::vsnprintf(line.text.data(), line.text.size() - 1, format, values);
   va_end(values);
-  std::string line(text.data());
-  line += '\n';
-  const std::size_t bytes = line.size();
-  outbox_.put(std::move(line), bytes);
+  // A longer line is cut; the last place but one holds the end of the text.
+  line.size = std::min(static_cast<std::size_t>(std::max(length, 0)), line.text.size() - 2);
+  line.text[line.size++] = '\n';
+  outbox_.put(line, line.size);
 }
 
 }  // namespace hopscotch::apps

@@ -1,5 +1,6 @@
 #include "apps/live_run.hpp"
 
+#include <chrono>
 #include <cstdlib>
 #include <utility>
 
@@ -61,15 +62,20 @@ msgs::RunLogHandlers into(CommandBox& box) {
 }
 
 constexpr std::size_t kQueueBytes = 8U << 20U;
-
-auto onto(msgs::LiveLink& link) {
-  return [&link](const msgs::Event& event) { return link.publish(event.channel, event.bytes); };
-}
+constexpr std::size_t kQueueItems = 4096;
+constexpr auto kSilence = std::chrono::milliseconds(200);
 
 }  // namespace
 
-LiveRun::LiveRun(const std::string& url, CommandBox& box)
-    : commands_(url, into(box)), events_(url), outbox_(onto(events_), kQueueBytes) {
+LiveRun::LiveRun(const std::string& url, CommandBox& box, std::uint64_t run_id)
+    : maker_(run_id),
+      commands_(url, into(box)),
+      events_(url),
+      outbox_([this](const Told& told) { return deliver(told); },
+              {.bytes = kQueueBytes, .items = kQueueItems},
+              {.after = kSilence, .act = [this] {
+                 if (last_status_) events_.publish(last_status_->channel, last_status_->bytes);
+               }}) {
   receiver_ = std::thread([this] {
     constexpr int kPatience = 100;  // [ms], then look whether the run is over
     while (!closing_) commands_.receive(kPatience);
@@ -79,6 +85,30 @@ LiveRun::LiveRun(const std::string& url, CommandBox& box)
 LiveRun::~LiveRun() {
   closing_ = true;
   receiver_.join();
+}
+
+void LiveRun::publish(const msgs::Event& event) {
+  outbox_.put({event.now, event}, event.bytes.size());
+}
+
+void LiveRun::tell(core::Stamp now, const msgs::Status& status) {
+  outbox_.put({now, status}, sizeof status);
+}
+
+void LiveRun::tell(core::Stamp now, msgs::Ack answer) {
+  outbox_.put({now, std::move(answer)}, sizeof answer);
+}
+
+bool LiveRun::deliver(const Told& told) {
+  if (const auto* const event = std::get_if<msgs::Event>(&told.what)) {
+    return events_.publish(event->channel, event->bytes);
+  }
+  if (const auto* const status = std::get_if<msgs::Status>(&told.what)) {
+    last_status_ = maker_.make(told.now, *status);
+    return events_.publish(last_status_->channel, last_status_->bytes);
+  }
+  const msgs::Event answer = maker_.make(told.now, std::get<msgs::Ack>(told.what));
+  return events_.publish(answer.channel, answer.bytes);
 }
 
 }  // namespace hopscotch::apps

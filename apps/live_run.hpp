@@ -1,10 +1,12 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include "apps/command_gate.hpp"
@@ -42,22 +44,39 @@ class CommandBox {
 
 /// A run on the network of this machine: publishes its events and receives commands.
 class LiveRun {
+ private:
+  struct Told {
+    core::Stamp now;
+    std::variant<msgs::Event, msgs::Status, msgs::Ack> what;
+  };
+
  public:
   /// @param box Gets every well-formed command that arrives; outlives this object.
+  /// @param run_id Sender of what is told.
   /// @throws msgs::LiveUnavailable when the machine cannot carry live messages.
-  LiveRun(const std::string& url, CommandBox& box);
+  LiveRun(const std::string& url, CommandBox& box, std::uint64_t run_id);
   ~LiveRun();
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
 
-  /// Never waits for the network.
-  void publish(const msgs::Event& event) { outbox_.put(event, event.bytes.size()); }
-  [[nodiscard]] Outbox<msgs::Event>::Counts counts() const { return outbox_.counts(); }
+  /// Neither waits for the network; one thread.
+  void publish(const msgs::Event& event);
+  /// A status or an answer, encoded and numbered on a thread of LiveRun's own: a status takes
+  /// nothing from the heap of whoever tells it. The last status is said again, by the wall clock,
+  /// while nothing else is: in lock-step time the loop can be silent for seconds while a jump is
+  /// planned, and whoever waits for an answer must not think it gone.
+  void tell(core::Stamp now, const msgs::Status& status);
+  void tell(core::Stamp now, msgs::Ack answer);
+  [[nodiscard]] Outbox<Told>::Counts counts() const { return outbox_.counts(); }
 
  private:
+  bool deliver(const Told& told);
+
+  msgs::EventMaker maker_;  ///< Of what is told; used by the outbox's thread only ...
+  std::optional<msgs::Event> last_status_;  ///< ... and so is this.
   msgs::LiveLink commands_;
   msgs::LiveLink events_;  ///< Apart, so that a burst of events cannot crowd out a command.
-  Outbox<msgs::Event> outbox_;
+  Outbox<Told> outbox_;
   std::atomic<bool> closing_{false};
   std::thread receiver_;
 };

@@ -62,14 +62,16 @@ void OperatorDesk::accept_target(double start_in) {
     return;
   }
   if (stage_ == Stage::fresh) {
-    accept(*target_, start_in > 0.0 ? "it jumps once it has landed" : "it jumps now");
-    answers_.back().start_in = start_in;
+    accept(*target_, start_in > 0.0 ? "it jumps once it has landed" : "it jumps now", start_in);
   }
   target_.reset();
 }
 
-void OperatorDesk::accept(const OperatorCommand& command, std::string remark) {
-  answers_.push_back({.command = command, .refusal = {}, .remark = std::move(remark)});
+void OperatorDesk::accept(const OperatorCommand& command, std::string_view remark,
+                          double start_in) {
+  if (command.sequence == 0) return;
+  answers_.push_back(
+      {.command = command, .refusal = {}, .start_in = start_in, .remark = std::string(remark)});
 }
 
 void OperatorDesk::refuse(const OperatorCommand& command, Refusal refusal) {

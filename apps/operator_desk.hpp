@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/operator_command.hpp"
@@ -36,7 +36,10 @@ class OperatorDesk {
   /// The target that was due has been planned. @param start_in Until the jump starts [s].
   void accept_target(double start_in);
 
-  void accept(const core::OperatorCommand& command, std::string remark);
+  /// @param start_in As in the answer. A command with the sequence number 0 is the program's own
+  ///                 wish: nobody waits for its answer.
+  void accept(const core::OperatorCommand& command, std::string_view remark,
+              double start_in = core::kNaN);
   void refuse(const core::OperatorCommand& command, core::Refusal refusal);
   /// Answers since the last call, oldest first.
   [[nodiscard]] std::vector<core::OperatorAnswer> take_answers();

@@ -242,7 +242,6 @@ bool Pipeline::is_blind(core::Stamp now) const {
 }
 
 void Pipeline::ask_where(const core::RobotState& state) {
-  if (oracle_) map_ = std::make_shared<const core::TerrainMap>(oracle_(state));
   for_operator_ = desk_.due().has_value();
   footstep::LandingTask task = task_;
   if (for_operator_) task.target = desk_.due();
@@ -251,14 +250,15 @@ void Pipeline::ask_where(const core::RobotState& state) {
   const auto jump = static_cast<std::size_t>(jumps_done_);
   if (!task.target && jump < mission_.targets.size()) task.target = mission_.targets[jump];
   events_.asked = &decision_.question();
-  decision_.question() = {map_, hanging_,      control_->rest_state(),
-                          task, for_operator_, ++plans_made_};
+  decision_.question() = {map_,          hanging_, control_->rest_state(), task, for_operator_,
+                          ++plans_made_, state};
   decision_.ask(state.stamp);
 }
 
 /// On the planning stage's thread.
 void Pipeline::make_decision(const DecisionQuestion& question, Decision& decision) {
-  const auto& [map, hanging, rest, task, for_operator, plan_id] = question;
+  const auto& [seen, hanging, rest, task, for_operator, plan_id, now] = question;
+  const auto map = oracle_ ? std::make_shared<const core::TerrainMap>(oracle_(now)) : seen;
   const perception::OneStepConfig& one_step = config_.perception.one_step;
   decision.map = map;
   decision.terrain =

@@ -106,6 +106,7 @@ struct DecisionQuestion {
   footstep::LandingTask task;
   bool for_operator = false;  ///< `task.target` is the operator's.
   std::uint64_t plan_id = 0;
+  core::RobotState now;  ///< Where an oracle is asked from.
 };
 
 struct Decision {

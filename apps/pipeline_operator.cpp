@@ -74,11 +74,13 @@ void Pipeline::apply_target(const core::OperatorCommand& command) {
 
 void Pipeline::apply_mode(const core::OperatorCommand& command) {
   const bool limp = core::is_limp(control_->phase());
-  const core::Refusal drives_off{Reason::not_now, "the drives are off: `hopscotch command enable`"};
+  const auto refuse = [&] {
+    desk_.refuse(command, {Reason::not_now, "the drives are off: `hopscotch command enable`"});
+  };
   switch (command.mode) {
     case ModeRequest::enable: enable(command); break;
     case ModeRequest::jump:
-      if (limp) return desk_.refuse(command, drives_off);
+      if (limp) return refuse();
       static_cast<void>(control_->release());  // refused where nothing holds it
       desk_.set_mode(Mode::free);
       if (std::isfinite(command.goal_x)) mission_.goal_x = task_.goal_x = command.goal_x;
@@ -87,7 +89,7 @@ void Pipeline::apply_mode(const core::OperatorCommand& command) {
     case ModeRequest::hold:
     case ModeRequest::stop: {
       if (!control_->hold() && control_->phase() != RobotPhase::hold) {
-        return desk_.refuse(command, drives_off);
+        return refuse();
       }
       decision_.drop();
       const bool stop = command.mode == ModeRequest::stop;

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "core/allocation_count.hpp"
 #include "hardware/range_check.hpp"
-#include "msgs/channels.hpp"
 
 namespace hopscotch::apps {
 
@@ -35,26 +35,6 @@ std::vector<hardware::CanBus> open_buses(const hardware::BusTopology& topology) 
 
 }  // namespace
 
-Heartbeat::Heartbeat(LiveRun& live)
-    : thread_([this, &live](const std::stop_token& stop) {
-        constexpr auto kPeriod = std::chrono::milliseconds(200);
-        while (!stop.stop_requested()) {
-          std::this_thread::sleep_for(kPeriod);
-          const std::lock_guard lock(mutex_);
-          if (last_) live.publish(*last_);
-        }
-      }) {}
-
-void Heartbeat::remember(const msgs::Event& event) {
-  const std::lock_guard lock(mutex_);
-  last_ = event;
-}
-
-template <typename Value>
-void RobotProgram::publish(const Value& value) {
-  live_.publish(events_.make(now_, value));
-}
-
 RobotProgram::RobotProgram(const RobotConfig& config, Wire wire)
     : config_(config),
       wire_(wire),
@@ -64,9 +44,19 @@ RobotProgram::RobotProgram(const RobotConfig& config, Wire wire)
       session_(config, plant_, landing_posture(config)),
       run_id_(wall_clock_us()),
       gate_(run_id_, run_id_),
-      live_(live_url(), box_),
-      events_(run_id_) {
+      live_(live_url(), box_, run_id_),
+      spare_brains_(
+          {.name = "preparation", .threaded = config.pacing.mode == Pacing::Mode::real_time},
+          [this](std::unique_ptr<RobotBrain>& used, std::unique_ptr<RobotBrain>& spare) {
+            used.reset();
+            spare = make_brain();
+          }) {
   if (config.session.has_eyes) eyes_.emplace(live_url());
+  spare_ = make_brain();
+}
+
+std::unique_ptr<RobotBrain> RobotProgram::make_brain() {
+  return std::make_unique<RobotBrain>(config_, eyes_ ? &*eyes_ : nullptr);
 }
 
 hardware::PlantPorts RobotProgram::make_ports() {
@@ -121,8 +111,10 @@ ExitStatus RobotProgram::run(const std::atomic<bool>& interrupted) {
       session_.stop_now();
     }
     if (finishing_ && session_.stage() == SessionStage::off) break;
+    const std::size_t before = core::allocation_count();
     session_.tick();
     attend();
+    exchanges_with_heap_ += core::allocation_count() != before ? 1 : 0;
   }
   if (world_gone_) {
     std::fprintf(stderr, "robot: the emulated drives have gone\n");
@@ -148,7 +140,7 @@ void RobotProgram::attend() {
   }
   if (brain_ && session_.stage() == SessionStage::active) {
     for (const core::OperatorAnswer& said : brain_->pipeline().events().answers) {
-      if (said.command.sequence != 0) send(said);
+      if (said.command.sequence != 0) voice_.tell(now_, said);
     }
     if (const std::optional<core::Refusal> refusal = brain_->take_refusal()) {
       console_.say("robot: %.3f s: no jump: %s; it holds", now_.seconds(), refusal->text().c_str());
@@ -159,11 +151,12 @@ void RobotProgram::attend() {
       session_.stop_now();
     }
   }
-  tell_progress();
-  constexpr double kStatusEvery = 0.05;  // [s]
-  if (now_.since(told_) >= kStatusEvery) {
-    told_ = now_;
-    tell_status();
+  if (spare_brains_.made() != nullptr) spare_ = std::move(*spare_brains_.take(now_));
+  voice_.tell(now_, session_, brain_.get());
+  constexpr double kTableEvery = 1.0;  // [s]
+  if (wire_ == Wire::listen && now_.since(printed_) >= kTableEvery) {
+    printed_ = now_;
+    print_joints();
   }
 }
 
@@ -207,8 +200,13 @@ void RobotProgram::enable(const core::OperatorCommand& command) {
   }
   const std::string obstacle = session_.obstacle();
   if (!obstacle.empty()) return answer(command, {Reason::not_homed, obstacle}, "");
-  brain_ = std::make_unique<RobotBrain>(config_, eyes_ ? &*eyes_ : nullptr);
+  if (!spare_) {
+    return answer(command, {Reason::not_now, "the controller is still being made ready"}, "");
+  }
+  std::swap(brain_, spare_);
   session_.enable(brain_->session_brain());
+  spare_brains_.question() = std::move(spare_);
+  spare_brains_.ask(now_);
   answer(command, {}, "the drives turn on and the robot stands up, then waits for `command jump`");
 }
 
@@ -218,60 +216,7 @@ void RobotProgram::answer(const core::OperatorCommand& command, const core::Refu
   said.command = command;
   said.refusal = refusal;
   said.remark = remark;
-  send(said);
-}
-
-void RobotProgram::send(const core::OperatorAnswer& said) {
-  console_.say("robot: %.3f s: operator's %s: %s", now_.seconds(),
-               said.command.mode == ModeRequest::none
-                   ? "target"
-                   : std::string(core::mode_request_name(said.command.mode)).c_str(),
-               said.accepted() ? "accepted" : said.refusal.text().c_str());
-  publish(ack_of(now_, said));
-}
-
-void RobotProgram::tell_status() {
-  msgs::Status status;
-  if (brain_ && brain_->ticked()) status.control = brain_->pipeline().status();
-  status.control.stamp = now_;
-  if (session_.stage() != SessionStage::active) {
-    status.control.phase =
-        session_.fault().reason == Reason::none ? core::RobotPhase::damp : core::RobotPhase::fault;
-  }
-  status.control.fault = session_.fault().reason;
-  status.jump = told_jumps_;
-  status.deadline_misses = static_cast<int>(session_.deadlines().late);
-  const msgs::Event event = events_.make(now_, status);
-  live_.publish(event);
-  heartbeat_.remember(event);
-}
-
-std::string RobotProgram::fault_text() const {
-  const SessionFault& fault = session_.fault();
-  const std::string where = hardware::describe(fault.plant, config_.topology);
-  return std::string(core::reason_code(fault.reason)) + (where.empty() ? "" : ": " + where) +
-         ", in " + std::string(core::robot_phase_name(fault.phase));
-}
-
-void RobotProgram::tell_progress() {
-  const SessionStage stage = session_.stage();
-  if (stage != told_stage_) {
-    const bool fault =
-        stage == SessionStage::stopping && session_.fault().reason != Reason::stopped_by_user;
-    console_.say("robot: %.3f s: %s%s", now_.seconds(),
-                 std::string(session_stage_name(stage)).c_str(),
-                 fault ? (", fault " + fault_text()).c_str() : "");
-    told_stage_ = stage;
-  }
-  if (brain_ && brain_->jumps() != told_jumps_) {
-    told_jumps_ = brain_->jumps();
-    console_.say("robot: %.3f s: jump %d has landed", now_.seconds(), told_jumps_);
-  }
-  constexpr double kEvery = 1.0;  // [s]
-  if (wire_ == Wire::listen && now_.since(printed_) >= kEvery) {
-    printed_ = now_;
-    print_joints();
-  }
+  voice_.tell(now_, said);
 }
 
 void RobotProgram::print_counters() {
@@ -285,6 +230,11 @@ void RobotProgram::print_counters() {
       number(wire.lost_replies), number(wire.malformed), number(wire.wrong_sender),
       number(wire.implausible), number(wire.not_sent), number(wire.bus_errors),
       number(wire.foreign));
+  // In lock-step the loop plans as well.
+  if (wake_) {
+    console_.say("robot: the loop took memory from the heap in %llu exchanges",
+                 number(exchanges_with_heap_));
+  }
 }
 
 void RobotProgram::print_joints() {

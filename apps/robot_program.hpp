@@ -5,10 +5,8 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "apps/command_gate.hpp"
@@ -20,25 +18,13 @@
 #include "apps/robot_brain.hpp"
 #include "apps/robot_config.hpp"
 #include "apps/robot_session.hpp"
+#include "apps/robot_voice.hpp"
+#include "apps/stage.hpp"
 #include "apps/step_link.hpp"
 #include "hardware/can_bus.hpp"
 #include "hardware/imu.hpp"
 
 namespace hopscotch::apps {
-
-/// Says again, by the wall clock, what was said last: in lock-step time the loop can be silent for
-/// seconds while a jump is planned, and whoever waits for an answer must not think it gone.
-class Heartbeat {
- public:
-  /// @param live Outlives this object.
-  explicit Heartbeat(LiveRun& live);
-  void remember(const msgs::Event& event);
-
- private:
-  std::mutex mutex_;
-  std::optional<msgs::Event> last_;
-  std::jthread thread_;  // last, so that it ends before what it uses
-};
 
 /// `hopscotch robot`: buses, IMU, session and operator in one loop. Nothing moves but on the
 /// operator's word, and every word gets an answer.
@@ -65,14 +51,9 @@ class RobotProgram {
   void enable(const core::OperatorCommand& command);
   void answer(const core::OperatorCommand& command, const core::Refusal& refusal,
               const std::string& remark);
-  void send(const core::OperatorAnswer& answer);
-  template <typename Value>
-  void publish(const Value& value);
-  void tell_progress();
-  void tell_status();
+  [[nodiscard]] std::unique_ptr<RobotBrain> make_brain();
   void print_joints();
   void print_counters();
-  [[nodiscard]] std::string fault_text() const;
 
   RobotConfig config_;
   Wire wire_;
@@ -86,19 +67,19 @@ class RobotProgram {
   hardware::RobotPlant plant_;
   RobotSession session_;
   std::optional<DepthInbox> eyes_;
-  std::unique_ptr<RobotBrain> brain_;
+  std::unique_ptr<RobotBrain> brain_;  ///< Of the last enabling.
+  std::unique_ptr<RobotBrain> spare_;  ///< For the next: to make one takes long, and memory.
 
   CommandBox box_;
   std::uint64_t run_id_;
   CommandGate gate_;
   LiveRun live_;
-  Heartbeat heartbeat_{live_};
-  msgs::EventMaker events_;
+  RobotVoice voice_{config_.topology, console_, live_};
   bool finishing_ = false;  ///< The robot is to be off, then the program ends.
-  core::Stamp told_;        ///< Last status.
   core::Stamp printed_;     ///< Last table of joints.
-  SessionStage told_stage_ = SessionStage::off;
-  int told_jumps_ = 0;
+  std::uint64_t exchanges_with_heap_ = 0;
+  /// Takes a used brain apart and makes the next. Last, so that its thread ends before the others.
+  Stage<std::unique_ptr<RobotBrain>, std::unique_ptr<RobotBrain>> spare_brains_;
 };
 
 }  // namespace hopscotch::apps

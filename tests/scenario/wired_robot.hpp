@@ -12,6 +12,7 @@
 #include "apps/robot_brain.hpp"
 #include "apps/robot_config.hpp"
 #include "apps/robot_session.hpp"
+#include "core/allocation_count.hpp"
 #include "sim/judge.hpp"
 
 namespace hopscotch::apps::testing {
@@ -38,7 +39,10 @@ class WiredRobot {
     return done();
   }
   void tick() {
+    const std::size_t before = core::allocation_count();
+    world_allocations_ = 0;
     session.tick();
+    allocations = core::allocation_count() - before - world_allocations_;
     if (each_tick) each_tick(world.truth().state);
     if (!world.in_harness()) fallen = fallen || sim::fall_of(world.truth()).has_value();
   }
@@ -69,23 +73,40 @@ class WiredRobot {
   std::optional<PeriodicWake> wake;  ///< Set: exchanges wait for the clock.
   std::function<void(const core::RobotState& truth)> each_tick;
   bool fallen = false;
-  int stall_ticks = 0;  ///< The host oversleeps its next exchange by so much.
+  int stall_ticks = 0;          ///< The host oversleeps its next exchange by so much.
+  std::size_t allocations = 0;  ///< By the last exchange, without those of the emulation.
 
  private:
   std::uint64_t asked_ = 0;
+  std::size_t world_allocations_ = 0;
+  /// What the emulation takes from the heap is not the robot's.
+  template <typename Work>
+  auto apart(const Work& work) {
+    const std::size_t before = core::allocation_count();
+    const auto result = work();
+    world_allocations_ += core::allocation_count() - before;
+    return result;
+  }
   hardware::PlantPorts ports(const RobotConfig& config) {
     hardware::PlantPorts ports;
     for (std::size_t i = 0; i < config.topology.buses.size(); ++i) {
-      ports.buses.push_back(world.bus(i).host_port());
+      const hardware::CanPort port = world.bus(i).host_port();
+      ports.buses.push_back(
+          {.send = [this, port](auto frames) { return apart([&] { return port.send(frames); }); },
+           .receive = [this,
+                       port](auto events) { return apart([&] { return port.receive(events); }); }});
     }
-    ports.imu = [this] { return world.imu(); };
+    ports.imu = [this] { return apart([&] { return world.imu(); }); };
     const int period = static_cast<int>(std::lround(1000.0 / config.topology.rate));
     ports.wait = [this, period] {
       if (wake) wake->wait();
-      for (int i = 0; i < period + stall_ticks; ++i) {
-        script.play(world);
-        world.advance();
-      }
+      apart([&] {
+        for (int i = 0; i < period + stall_ticks; ++i) {
+          script.play(world);
+          world.advance();
+        }
+        return 0;
+      });
       stall_ticks = 0;
       return world.now();
     };

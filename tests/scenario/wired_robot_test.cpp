@@ -1,12 +1,16 @@
 // The robot's own program on emulated CAN buses and drives, with MuJoCo behind them. Every fault
 // has its end state: who is limp, who stands, and how far the trunk came down.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "apps/robot_voice.hpp"
 #include "sim/sim_camera.hpp"
+#include "tests/scenario/own_network.hpp"
 #include "tests/scenario/wired_robot.hpp"
 
 namespace hopscotch::apps {
@@ -67,6 +71,45 @@ TEST(WiredRobot, LeapsWithItsStagesOnThreads) {
   EXPECT_EQ(robot.session.stage(), SessionStage::active);
   EXPECT_FALSE(robot.fallen);
   EXPECT_NEAR(robot.world.truth().state.p_WB.x(), 0.25, 0.06);
+}
+
+/// Exchange, session, controller, status over LCM and lines for people, with the stages on threads:
+/// memory is taken when the controller starts and on the operator's word, never between.
+TEST(WiredRobot, TheLoopTakesNothingFromTheHeap) {
+  use_own_network();  // threads inherit it
+  RobotConfig config = testing::wired_config();
+  config.pacing.mode = Pacing::Mode::real_time;
+  WiredRobot robot(config);
+  robot.wake.emplace(0.002);
+  CommandBox box;
+  LiveRun live("udpm://239.255.76.67:7667?ttl=0", box, 1);
+  const int nowhere = open("/dev/null", O_WRONLY);
+  Console console(nowhere);
+  RobotVoice voice(config.topology, console, live);
+  int exchanges = 0;
+  bool watched = false;
+  robot.each_tick = [&](const core::RobotState&) {
+    const std::size_t before = core::allocation_count();
+    voice.tell(robot.world.now(), robot.session, &robot.brain);
+    const std::size_t taken = core::allocation_count() - before + robot.allocations;
+    if (!watched) return;
+    ++exchanges;
+    EXPECT_EQ(taken, 0U) << "at " << robot.world.now().seconds() << " s";
+  };
+  robot.enable();
+  ASSERT_TRUE(robot.run_until([&] { return robot.brain.ticked(); }, 3.0));
+  watched = true;
+  robot.run(2.0);
+  watched = false;
+  robot.ask(core::ModeRequest::jump);
+  robot.tick();  // carries the answer away
+  watched = true;
+  ASSERT_TRUE(robot.run_until([&] { return robot.brain.jumps() == 1; }, 8.0));
+  robot.run(1.0);
+  EXPECT_GT(exchanges, 3000);
+  EXPECT_GT(live.counts().sent, 60U);  // twenty a second
+  EXPECT_GE(console.counts().sent, 3U);
+  close(nowhere);
 }
 
 /// @param slabs  The ground, as in a scenario file.

@@ -5,11 +5,15 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "apps/console.hpp"
 #include "apps/live_run.hpp"
+#include "core/allocation_count.hpp"
 
 namespace hopscotch::apps {
 namespace {
@@ -22,7 +26,7 @@ TEST(Outbox, DeliversInOrderBeforeItGoes) {
           got.push_back(item);
           return true;
         },
-        1000);
+        {.bytes = 1000});
     for (int i = 0; i < 100; ++i) outbox.put(i, 1);
   }
   ASSERT_EQ(got.size(), 100U);
@@ -30,7 +34,7 @@ TEST(Outbox, DeliversInOrderBeforeItGoes) {
 }
 
 TEST(Outbox, CountsWhatIsSentAndWhatFails) {
-  Outbox<bool> outbox([](bool well) { return well; }, 1000);
+  Outbox<bool> outbox([](bool well) { return well; }, {.bytes = 1000});
   for (const bool well : {true, false, true}) outbox.put(well, 1);
   while (outbox.counts().sent + outbox.counts().failed < 3) std::this_thread::yield();
   EXPECT_EQ(outbox.counts().sent, 2U);
@@ -38,9 +42,55 @@ TEST(Outbox, CountsWhatIsSentAndWhatFails) {
 }
 
 TEST(Outbox, DropsAndCountsWhatDoesNotFitIntoTheQueue) {
-  Outbox<int> outbox([](int) { return true; }, 50);
+  Outbox<int> outbox([](int) { return true; }, {.bytes = 50});
   outbox.put(1, 51);
   EXPECT_EQ(outbox.counts().dropped, 1U);
+}
+
+TEST(Outbox, DropsAndCountsWhatFindsNoPlace) {
+  std::atomic<bool> blocked{true};
+  std::vector<int> got;
+  {
+    Outbox<int> outbox(
+        [&](int item) {
+          blocked.wait(true);
+          got.push_back(item);
+          return true;
+        },
+        {.bytes = 1000, .items = 4});
+    for (int i = 0; i < 100; ++i) outbox.put(i, 1);
+    EXPECT_GE(outbox.counts().dropped, 95U);  // four places, one in delivery
+    blocked = false;
+    blocked.notify_all();
+  }
+  ASSERT_GE(got.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(got[i], static_cast<int>(i));
+}
+
+TEST(Outbox, PuttingTakesNothingFromTheHeap) {
+  std::atomic<int> got{0};
+  Outbox<std::array<char, 500>> outbox(
+      [&](const auto&) {
+        ++got;
+        return true;
+      },
+      {.bytes = 1U << 20U});
+  const std::size_t before = core::allocation_count();
+  for (int i = 0; i < 5000; ++i) outbox.put({}, 500);
+  EXPECT_EQ(core::allocation_count(), before);
+  while (outbox.counts().sent + outbox.counts().dropped < 5000) std::this_thread::yield();
+  EXPECT_GT(got, 0);
+}
+
+TEST(Outbox, ActsWheneverNothingHasCome) {
+  std::atomic<int> acted{0};
+  Outbox<int> outbox([](int) { return true; }, {.bytes = 10},
+                     {.after = std::chrono::milliseconds(1), .act = [&] { ++acted; }});
+  while (acted < 3) std::this_thread::yield();
+  outbox.put(1, 1);
+  const int then = acted;
+  while (acted < then + 3) std::this_thread::yield();
+  EXPECT_EQ(outbox.counts().sent, 1U);
 }
 
 /// Both ends of a pipe.
@@ -75,6 +125,14 @@ TEST(Console, NobodyWaitsForATerminalThatTakesNothing) {
   for (int i = 0; i < 10000; ++i) console.say("%s", page.c_str());
   EXPECT_GT(console.counts().dropped, 0U);
   EXPECT_EQ(console.counts().sent, 0U);
+}
+
+TEST(Console, SayingTakesNothingFromTheHeap) {
+  const Pipe pipe;
+  Console console(pipe.ends[1]);
+  const std::size_t before = core::allocation_count();
+  for (int i = 0; i < 10; ++i) console.say("robot: %.3f s: jump %d of %s", 1.5, i, "five");
+  EXPECT_EQ(core::allocation_count(), before);
 }
 
 TEST(CommandBox, IsBounded) {
