@@ -154,10 +154,13 @@ class MotorsProgram {
   void answer_bus(std::size_t bus) {
     std::array<hardware::CanEvent, hardware::CanBus::kBatch> events;
     const std::size_t count = buses_[bus].receive(events);
+    std::vector<hardware::CanFrame> answers;  // one system call for all
     for (std::size_t i = 0; i < count; ++i) {
       if (events[i].kind != hardware::CanEvent::Kind::received) continue;
-      buses_[bus].send(world_.answer(bus, events[i].frame));
+      const auto more = world_.answer(bus, events[i].frame);
+      answers.insert(answers.end(), more.begin(), more.end());
     }
+    if (!answers.empty()) buses_[bus].send(answers);
   }
 
   void send_imu() {

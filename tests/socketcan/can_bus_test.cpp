@@ -161,6 +161,7 @@ struct TenDrives {
       for (const DriveMount& drive : topology.drives) {
         if (drive.bus != i) continue;
         host.identifiers.push_back(drive.reply_id);
+        host.identifiers.push_back(drive.id);  // to be confirmed, as `robot` wants it
         far_end.identifiers.push_back(drive.id);
       }
       hosts.emplace_back(host);
@@ -175,13 +176,18 @@ struct TenDrives {
     for (CanBus& bus : far_ends) waited.push_back({bus.descriptor(), POLLIN, 0});
     while (!done) {
       if (poll(waited.data(), waited.size(), 100) <= 0) continue;
-      for (CanBus& bus : far_ends) {
-        const std::size_t count = bus.receive(events);
+      for (std::size_t bus = 0; bus < far_ends.size(); ++bus) {
+        if ((waited[bus].revents & POLLIN) == 0) continue;
+        const std::size_t count = far_ends[bus].receive(events);
+        std::vector<CanFrame> answers;
         for (std::size_t i = 0; i < count; ++i) {
           for (EmulatedDrive& drive : drives) {
-            if (const auto answer = drive.receive(events[i].frame, {}, {})) bus.send({&*answer, 1});
+            if (const auto answer = drive.receive(events[i].frame, {}, {})) {
+              answers.push_back(*answer);
+            }
           }
         }
+        far_ends[bus].send(answers);
       }
     }
   }
@@ -205,8 +211,9 @@ struct TenDrives {
     for (CanBus& bus : hosts) waited.push_back({bus.descriptor(), POLLIN, 0});
     int answers = 0;
     while (answers < core::kJoints && poll(waited.data(), waited.size(), 1000) > 0) {
-      for (CanBus& bus : hosts) {
-        const std::size_t count = bus.receive(events);
+      for (std::size_t bus = 0; bus < hosts.size(); ++bus) {
+        if ((waited[bus].revents & POLLIN) == 0) continue;
+        const std::size_t count = hosts[bus].receive(events);
         for (std::size_t i = 0; i < count; ++i) {
           answers += events[i].kind == CanEvent::Kind::received ? 1 : 0;
         }
