@@ -33,6 +33,7 @@ SupervisorConfig SupervisorConfig::load(const core::ConfigReader& section) {
   config.fall_time = section.number("fall_time_s", Range::above(0.0, 1.0));
   config.rest_speed = section.number("rest_speed_mps", Range::positive());
   config.rest_rate = section.number("rest_rate_rad_s", Range::positive());
+  config.rest_early = 1e-3 * section.number("rest_early_ms", Range::closed(0.0, 100.0));
   config.stray_max = section.number("stray_max_m", Range::positive());
   config.commit_speed = section.number("commit_speed_mps", Range::closed(0.0, 1.0));
   section.finish();

@@ -39,6 +39,7 @@ struct SupervisorConfig {
   double fall_time = 0.0;     ///< Standing with both feet unloaded for so long is falling [s].
   double rest_speed = 0.0;    ///< Of the trunk; slower is at rest [m/s].
   double rest_rate = 0.0;     ///< Of the trunk; slower is at rest [rad/s].
+  double rest_early = 0.0;    ///< Before the end of a landing, a robot at rest stands already [s].
   double stray_max = 0.0;     ///< Of the capture point in a crouch; beyond, the jump is off [m].
   double commit_speed = 0.0;  ///< Planned rise of the CoM from which a jump must go on [m/s].
 

@@ -73,8 +73,11 @@ void JumpSupervisor::advance(const core::RobotState& state, const core::JumpPlan
       }
       break;
     case RobotPhase::landing:
-      if (plan_time < plan.duration) break;
-      phase_ = at_rest(state) ? RobotPhase::stand : RobotPhase::recover;
+      if (plan_time >= plan.duration - config_.rest_early && at_rest(state)) {
+        phase_ = RobotPhase::stand;
+      } else if (plan_time >= plan.duration) {
+        phase_ = RobotPhase::recover;
+      }
       break;
     case RobotPhase::recover:
       if (hopping_) {

@@ -17,7 +17,7 @@ namespace hopscotch::control {
 /// | crouch                       | landing | the body has strayed too far from its plan      |
 /// | takeoff                      | flight  | the plan's lift-off time has passed             |
 /// | flight                       | landing | a foot bears load after `touchdown_from` of it  |
-/// | landing                      | stand   | the plan's duration has passed, at rest         |
+/// | landing                      | stand   | at rest, `rest_early` before the plan's end on  |
 /// | landing                      | recover | the plan's duration has passed, not at rest     |
 /// | recover                      | stand   | at rest, and no recovery hop under way          |
 /// | stand, landing, recover      | recover | a recovery hop begins                           |

@@ -30,6 +30,7 @@ inline ControlConfig test_config() {
                        .fall_time = 0.02,
                        .rest_speed = 0.25,
                        .rest_rate = 1.0,
+                       .rest_early = 0.0,
                        .stray_max = 10.0,  // the state does not follow the plan here
                        .commit_speed = 0.2};
   config.recovery_hop = kHopConfig;

@@ -26,6 +26,7 @@ const SupervisorConfig kConfig{.touchdown_from = 0.5,
                                .fall_time = 0.02,
                                .rest_speed = 0.25,
                                .rest_rate = 1.0,
+                               .rest_early = 0.02,
                                .commit_speed = 0.2};
 
 class JumpSupervisorTest : public ::testing::Test {
@@ -64,8 +65,19 @@ TEST_F(JumpSupervisorTest, GoesThroughTheTableInOrder) {
   EXPECT_EQ(supervisor_.update(state_, plan_, 0.199), RobotPhase::takeoff);
   EXPECT_EQ(supervisor_.update(state_, plan_, 0.200), RobotPhase::flight);
   EXPECT_EQ(supervisor_.update(state_, plan_, 0.260), RobotPhase::landing);
-  EXPECT_EQ(supervisor_.update(state_, plan_, 0.419), RobotPhase::landing);
-  EXPECT_EQ(supervisor_.update(state_, plan_, 0.420), RobotPhase::stand);
+  EXPECT_EQ(supervisor_.update(state_, plan_, 0.399), RobotPhase::landing);
+  EXPECT_EQ(supervisor_.update(state_, plan_, 0.401), RobotPhase::stand);
+}
+
+TEST_F(JumpSupervisorTest, ALandingStillInMotionNearItsEndGoesOnAndThenRecovers) {
+  fly_to(0.25);
+  state_.contact = {true, true};
+  EXPECT_EQ(supervisor_.update(state_, plan_, 0.260), RobotPhase::landing);
+  state_.v_WB.x() = 0.3;
+  EXPECT_EQ(supervisor_.update(state_, plan_, 0.410), RobotPhase::landing);
+  EXPECT_EQ(supervisor_.update(state_, plan_, 0.421), RobotPhase::recover);
+  state_.v_WB.x() = 0.0;
+  EXPECT_EQ(supervisor_.update(state_, plan_, 0.422), RobotPhase::stand);
 }
 
 TEST_F(JumpSupervisorTest, ContactEarlyInFlightIsTheLiftOffAndNoTouchdown) {
