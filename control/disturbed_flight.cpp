@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "control/plan_follower.hpp"
 #include "model/kinematics.hpp"
@@ -85,6 +86,49 @@ double stretch_in_flight(const JointGains& gains, const PlanMoment& moment, doub
   return share * std::min(wanted, gains.stretch_max);
 }
 
+/// A place over the ground, in the frame S of a jump [m].
+struct Over {
+  double x, z;
+};
+
+Over over_ground(const core::LandingTarget& target, const Eigen::Vector3d& p_W) {
+  const Eigen::Vector3d off = p_W - target.p_WS;
+  return {off.x() * std::cos(target.heading) + off.y() * std::sin(target.heading), off.z()};
+}
+
+/// How far a sole may go straight down before it reaches into what stands up before the landing
+/// place, the edge of a step that it is still on its way over [m]; no limit where there is nothing
+/// under it and ahead but the ground that it is to meet.
+double room_below(const core::LandingTarget& target, const model::SoleTips& tips) {
+  constexpr double kAhead = 0.08;    // way that a sole still makes while a leg could be folded [m]
+  constexpr double kSame = 0.03;     // the ground to land on, sloping [m]
+  constexpr double kMargin = 0.015;  // [m]
+  using Profile = core::TerrainProfile;
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  const Over heel = over_ground(target, tips.heel);
+  const Over toe = over_ground(target, tips.toe);
+  if (!std::isfinite(heel.x + toe.x + heel.z + toe.z + target.height)) return kNoLimit;
+  double highest = -kNoLimit;
+  double lowest = kNoLimit;
+  for (int i = Profile::sample(heel.x); i <= Profile::sample(toe.x + kAhead); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    highest = std::max(highest, target.profile.upper[at]);
+    lowest = std::min(lowest, target.profile.mean[at]);
+  }
+  if (highest < target.height + kSame && lowest > target.height - kSame) return kNoLimit;
+  return std::max(0.0, std::min(heel.z, toe.z) - highest - kMargin);
+}
+
+/// The same of both soles with the legs at such angles.
+double room_below(const model::RobotParameters& robot, const core::RobotState& state,
+                  const core::LandingTarget& target, const core::JointVector& q) {
+  core::RobotState aimed = state;
+  aimed.q = q;
+  const auto soles = model::sole_poses(robot, aimed);
+  return std::min(room_below(target, model::sole_tips(robot, soles[0])),
+                  room_below(target, model::sole_tips(robot, soles[1])));
+}
+
 /// Hips at their stops would meet the ground stiff. What a hip cannot turn, the ankle does: the
 /// soles stay level.
 void spare_hip_stops(const model::RobotParameters& robot, core::JointVector& q) {
@@ -152,7 +196,10 @@ void aim_legs(const JointGains& gains, const model::RobotParameters& robot,
   keep_soles(gains, state, planned, q);
   place_feet(gains, robot, state, planned, q);
   core::JointVector unused = core::JointVector::Zero();
-  const Stretch down{stretch_in_flight(gains, moment, turned), 0.0};
+  Stretch down{stretch_in_flight(gains, moment, turned), 0.0};
+  if (down.by > 0.0) {
+    down.by = std::min(down.by, room_below(robot, state, moment.plan.target, q));
+  }
   stretch_legs(robot, pitch, down, q, unused);
   spare_hip_stops(robot, q);
 }

@@ -24,7 +24,8 @@ struct PlanMoment {
 };
 
 /// The legs of a flight that does not go as planned: soles level and where the CoM needs them; legs
-/// stretched towards the ground when the trunk turns too far, so that it turns for less time.
+/// stretched towards the ground when the trunk turns too far, so that it turns for less time, but
+/// not into a riser that the target's profile shows before the landing place.
 /// @param[in,out] q Planned angles for the commanded moment [rad].
 void aim_legs(const JointGains& gains, const model::RobotParameters& robot,
               const core::RobotState& state, const PlanMoment& moment,

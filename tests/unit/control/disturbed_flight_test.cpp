@@ -130,6 +130,34 @@ TEST_F(DisturbedFlight, ATrunkThatTurnsTooFarMeetsTheGroundEarlier) {
   expect_lowered(kEarly, 0.3, 0.0);
 }
 
+TEST_F(DisturbedFlight, LegsDoNotReachIntoARiserOnTheWay) {
+  constexpr double kTurned = 0.6;
+  const auto tips = [&] {
+    return model::sole_tips(
+        robot_, model::sole_poses(robot_, with(flying(kLate, kTurned), aimed(kLate, kTurned)))[0]);
+  };
+  const model::SoleTips free = tips();  // the target says nothing about the ground
+  // A step whose edge the sole is over, 5 cm below a sole that is not stretched.
+  const double top = free.heel.z() + gains_.stretch_max - 0.05;
+  const double edge = 0.5 * (free.heel.x() + free.toe.x());
+  core::LandingTarget& target = plan_.target;
+  target.p_WS.setZero();
+  target.heading = 0.0;
+  target.height = top;
+  for (int i = 0; i < core::TerrainProfile::kSamples; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double height = core::TerrainProfile::x(i) < edge ? top - 0.2 : top;
+    target.profile.mean[at] = target.profile.upper[at] = height;
+  }
+  const model::SoleTips over_edge = tips();
+  EXPECT_GT(std::min(over_edge.heel.z(), over_edge.toe.z()), top + 0.01);
+  EXPECT_GT(over_edge.heel.z(), free.heel.z() + 0.01);
+  // Once it is over the step, its top is what the legs reach for.
+  target.profile.mean.fill(top);
+  target.profile.upper.fill(top);
+  EXPECT_NEAR(tips().heel.z(), free.heel.z(), 1e-9);
+}
+
 TEST_F(DisturbedFlight, HipsStayOffTheirStopsAndSolesLevel) {
   constexpr double kTurned = -1.0;
   const core::JointVector q = aimed(kLate, kTurned);
