@@ -102,6 +102,7 @@ void ControlTick::begin_next(const core::RobotState& state) noexcept {
   const double before = planned_heading(robot_, plan_.knots[plan_.knot_count - 1]);
   plan_ = next_;
   has_next_ = false;
+  tilt_.begin(tilt_of(plan_.target));
   start_ = state.stamp;
   const auto soles = model::sole_poses(robot_, state);
   // What the last landing turned too far is turned back, so that headings do not add up.
@@ -118,7 +119,10 @@ void ControlTick::begin_next(const core::RobotState& state) noexcept {
 
 /// From the present motion to a stand on the present soles.
 void ControlTick::settle(const core::RobotState& state, double duration) noexcept {
-  make_settle_plan(robot_, state, stand_, duration, plan_);
+  // The soles' tilt comes on top of any plan.
+  core::RobotState level = state;
+  tilt_soles(-tilt_.under(), level.q);
+  make_settle_plan(robot_, level, stand_, duration, plan_);
   start_ = state.stamp;
   placement_.takeoff =
       placement_.landing = {Eigen::Vector3d::Zero(), 0.0, centres(plan_.target.X_WF)};
@@ -198,6 +202,7 @@ void ControlTick::enter_phase(const core::RobotState& state) noexcept {
   } else if (phase() == RobotPhase::landing) {
     const bool follows = config_.ablation != core::Ablation::no_landing_plan;
     touchdown_ = state.stamp;
+    tilt_.land();
     shape_pending_ = shape_landing(robot_, state, plan_);
     start_ = state.stamp.after(
         -((follows ? plan_.touchdown_time : plan_.duration) + config_.actuation_delay));
@@ -231,8 +236,11 @@ void ControlTick::hop_if_it_must(const core::RobotState& state) noexcept {
   const bool loaded = state.contact[0] || state.contact[1];
   if (!on_ground || supervisor_.is_hopping() || !loaded) return;
   if (state.stamp.since(touchdown_) < hop.wait || !must_hop(hop, robot_, state)) return;
-  if (!make_recovery_hop(hop, robot_, state, stand_, hop_plan_) || !supervisor_.hop()) return;
+  core::RobotState level = state;
+  tilt_soles(-tilt_.under(), level.q);
+  if (!make_recovery_hop(hop, robot_, level, stand_, hop_plan_) || !supervisor_.hop()) return;
   has_next_ = false;
+  tilt_.stay();
   plan_ = hop_plan_;
   start_ = state.stamp;
   placement_.takeoff = {Eigen::Vector3d::Zero(), 0.0, centres(model::sole_poses(robot_, state))};
@@ -268,7 +276,11 @@ double ControlTick::stray(const core::RobotState& state, double body_time) const
 }
 
 core::JointCommand ControlTick::next_command(const core::RobotState& state) noexcept {
-  if (!started_) settle(state, config_.settle_time);
+  if (!started_) {
+    tilt_.begin_on(robot_, state);
+    settle(state, config_.settle_time);
+  }
+  const double elapsed = started_ ? state.stamp.since(state_.stamp) : 0.0;
   started_ = true;
   state_ = state;
   if (has_next_ && phase() == RobotPhase::stand) begin_next(state);
@@ -277,6 +289,7 @@ core::JointCommand ControlTick::next_command(const core::RobotState& state) noex
   if (crouching && stray(state, body_time) > config_.supervisor.stray_max &&
       supervisor_.call_off()) {
     has_next_ = false;
+    tilt_.stay();
     settle(state, config_.settle_time);
   }
   hop_if_it_must(state);
@@ -285,7 +298,10 @@ core::JointCommand ControlTick::next_command(const core::RobotState& state) noex
   was_hopping_ = supervisor_.is_hopping();
   settle_again(state);
   const bool on_ground = phase() == RobotPhase::landing || core::is_standing(phase());
-  if (on_ground && !was_hopping_) follow_feet(state);
+  if (on_ground && !was_hopping_) {
+    follow_feet(state);
+    tilt_.observe(robot_, state, elapsed);
+  }
 
   core::JointCommand command;
   command.stamp = state.stamp;
@@ -327,13 +343,16 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
   if (phase() == RobotPhase::flight && time >= plan_.touchdown_time) command.dq.setZero();
   command.kp << scale * config_.gains.kp, scale * config_.gains.kp;
   command.kd << scale * config_.gains.kd, scale * config_.gains.kd;
-  if (phase() != RobotPhase::flight) return;
+  if (phase() != RobotPhase::flight) return tilt_soles(tilt_.under(), command.q);
   const double body_time = time - config_.actuation_delay;
   if (is_falling_) {
     keep_soles(config_.gains, state, sample_plan(plan_, body_time), command.q);
   } else {
     aim_legs(config_.gains, robot_, state, {plan_, body_time}, command.q);
   }
+  const double flight = plan_.touchdown_time - plan_.liftoff_time;
+  tilt_soles(is_falling_ ? tilt_.under() : tilt_.in_flight((time - plan_.liftoff_time) / flight),
+             command.q);
 }
 
 ContactExpectation ControlTick::expected_contact() const noexcept {

@@ -7,6 +7,7 @@
 #include "control/contact_detector.hpp"
 #include "control/control_config.hpp"
 #include "control/delay_estimator.hpp"
+#include "control/ground_tilt.hpp"
 #include "control/jump_supervisor.hpp"
 #include "control/plan_follower.hpp"
 #include "control/recovery_hop.hpp"
@@ -134,6 +135,7 @@ class ControlTick {
   bool phase_changed_ = false;
   core::Stamp touchdown_;
   PlanPlacement placement_;
+  GroundTilt tilt_;
   bool is_falling_ = false;      ///< In flight without a jump.
   bool impact_pending_ = false;  ///< Of the end of a fall.
   bool shape_pending_ = false;   ///< Of a landing that was not as planned.

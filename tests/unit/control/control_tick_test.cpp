@@ -191,7 +191,11 @@ TEST_F(ControlTickTest, AWholeJumpAllocatesNothing) {
 TEST_F(ControlTickTest, SwitchedOnItGoesToTheStandFromWhereItIs) {
   ControlTick control{test_config(), robot_, StandTarget{state_.q, 0.0}};
   const core::JointVector stand = state_.q;
-  state_.q += core::JointVector::Constant(0.05);
+  for (const core::Leg leg : core::kAllLegs) {  // bent knees, soles as level as they were
+    state_.q[core::joint_index(leg, core::Joint::hip_pitch)] += 0.05;
+    state_.q[core::joint_index(leg, core::Joint::knee)] -= 0.10;
+    state_.q[core::joint_index(leg, core::Joint::ankle)] += 0.05;
+  }
   EXPECT_NEAR((step(control).q - state_.q).norm(), 0.0, 1e-9);
   core::JointVector last = state_.q;
   for (int i = 0; i < 500; ++i) {
