@@ -360,6 +360,20 @@ bool Pipeline::mission_accomplished(const core::RobotState& state) const {
   });
 }
 
+/// A jump that goes wrong before it rises is tried again: a push, a slip. One that always does will
+/// always do.
+/// @param plan_id Of the landing that begins; 0 if it is not that of a jump: one called off lands
+/// without having flown.
+void Pipeline::count_called_off(std::uint64_t plan_id) {
+  constexpr int kMost = 4;
+  called_off_ = plan_id == 0 && last_phase_ != RobotPhase::flight ? called_off_ + 1 : 0;
+  if (called_off_ < kMost || end_) return;
+  end_ = MissionEnd::refused;
+  end_reason_ = {
+      core::Reason::plan_infeasible,
+      std::to_string(kMost) + " jumps in a row strayed from their plans before they rose"};
+}
+
 /// Counts landings and notices when nothing is left to do.
 void Pipeline::watch_mission(const core::RobotState& state) {
   const core::ControlStatus& status = control_->status();
@@ -370,6 +384,7 @@ void Pipeline::watch_mission(const core::RobotState& state) {
     const bool jumped = status.plan_id != 0;  // and did not fall
     height_checked_ = !jumped && jumps_done_ > 0;
     jumps_done_ += jumped ? 1 : 0;
+    count_called_off(status.plan_id);
   }
   const bool standing = status.phase == RobotPhase::stand || status.phase == RobotPhase::hold;
   const bool still = standing && state.v_WB.norm() < config_.runtime.settle_speed;

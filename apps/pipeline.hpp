@@ -176,6 +176,7 @@ class Pipeline {
   void balance(core::Stamp now);
   void start(const core::RobotState& state);
   void receive_plan(const core::Result<core::JumpPlan>& plan);
+  void count_called_off(std::uint64_t plan_id);
   void watch_mission(const core::RobotState& state);
   void ask_where(const core::RobotState& state);
   void make_decision(const DecisionQuestion& question, Decision& decision);
@@ -228,6 +229,7 @@ class Pipeline {
   core::Stamp last_seen_;  // exposure of the newest frame in the map, or the touchdown after it
   int frames_since_landing_ = 0;
   int jumps_done_ = 0;
+  int called_off_ = 0;  ///< Jumps in a row that strayed before they rose.
   std::uint64_t plans_made_ = 0;
   std::optional<MissionEnd> end_;
   core::Refusal end_reason_;

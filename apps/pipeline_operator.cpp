@@ -37,6 +37,7 @@ void Pipeline::reopen() {
   end_reason_ = {};
   refused_since_.reset();
   failed_distances_.clear();
+  called_off_ = 0;
   task_.target.reset();
 }
 

@@ -187,11 +187,13 @@ struct Hindered {
   int unanswered = 0;
   int answered = 0;
 };
-Hindered leap_hindered(int iteration_cap, double latency) {
+/// @param declared What the controller takes the MPC's latency to be [s].
+Hindered leap_hindered(int iteration_cap, double latency, double declared) {
   RunRequest request = request_of(
       sim::Scenario::load(std::string(kConfig) + "scenarios/flat-leaps.yaml"), Eyes::truth, 4711);
   request.config.control.wrench_mpc.tolerances.iteration_cap = iteration_cap;
-  request.config.runtime.mpc_latency = request.config.control.mpc_delay = latency;
+  request.config.runtime.mpc_latency = latency;
+  request.config.control.mpc_delay = declared;
   const double stiff = request.config.control.gains.fallback_scale;
   constexpr auto kKnee = core::joint_index(core::Leg::left, core::Joint::knee);
   const double knee = request.config.control.gains.kp[kKnee];
@@ -215,23 +217,71 @@ void expect_five_leaps(const RunResult& result) {
 }
 
 TEST(Scenario, JumpsAreLandedWithoutAnyAnswerOfTheMpc) {
-  const Hindered none = leap_hindered(1, 0.001);  // nothing is solved in one iteration
+  const Hindered none = leap_hindered(1, 0.001, 0.001);  // nothing is solved in one iteration
   expect_five_leaps(none.result);
   EXPECT_GT(none.unanswered, 500);
   EXPECT_LT(none.answered, 5 * 30);  // until the lack of an answer shows
 }
 
 TEST(Scenario, JumpsAreLandedWithAnAnswerNowAndThen) {
-  const Hindered some = leap_hindered(7, 0.001);
+  const Hindered some = leap_hindered(7, 0.001, 0.001);
   expect_five_leaps(some.result);
   EXPECT_GT(some.unanswered, 0);
   EXPECT_GT(some.answered, 200);
 }
 
 TEST(Scenario, JumpsAreLandedWithALateMpc) {
-  const Hindered late = leap_hindered(30, 0.020);
+  const Hindered late = leap_hindered(30, 0.020, 0.020);
   expect_five_leaps(late.result);
   EXPECT_GT(late.answered, 500);
+}
+
+TEST(Scenario, JumpsAreLandedWithAnswersLaterThanDeclared) {
+  const Hindered late = leap_hindered(30, 0.010, 0.001);
+  expect_five_leaps(late.result);
+  EXPECT_GT(late.answered, 500);
+}
+
+TEST(Scenario, AnswersThatAreTooOldAreRefusedAndJumpsLandedAllTheSame) {
+  const Hindered late = leap_hindered(30, 0.030, 0.001);
+  expect_five_leaps(late.result);
+  EXPECT_GT(late.unanswered, 500);
+  EXPECT_LT(late.answered, 5 * 30);
+}
+
+TEST(Scenario, AJumpThatAlwaysGoesWrongIsGivenUpStanding) {
+  RunRequest request = request_of(
+      sim::Scenario::load(std::string(kConfig) + "scenarios/flat-leaps.yaml"), Eyes::truth, 4711);
+  request.config.control.supervisor.stray_max = 1e-4;  // no crouch is as good as that [m]
+  LockstepRun run(request);
+  while (run.step({})) {
+  }
+  const RunResult result = run.result();
+  EXPECT_EQ(result.outcome, RunOutcome::refused) << result.reason;
+  EXPECT_NE(result.reason.find("4 jumps in a row"), std::string::npos) << result.reason;
+  EXPECT_EQ(result.falls, 0);
+}
+
+TEST(Scenario, SlopesUpAndDownAreCrossed) {
+  for (const double slope : {0.14, -0.16}) {
+    const double far = 0.60 * std::tan(slope);
+    const RunResult result = run_text(
+        "name: ramp\n"
+        "slabs:\n"
+        "  - {x_m: [-1.0, 0.175]}\n"
+        "  - {x_m: [0.175, 0.775], slope_rad: " +
+            std::to_string(slope) +
+            "}\n"
+            "  - {x_m: [0.775, 3.775], top_m: " +
+            std::to_string(far) +
+            "}\n"
+            "goal: {x_m: 0.90}\n",
+        Eyes::truth);
+    EXPECT_EQ(result.outcome, RunOutcome::completed) << slope << ": " << result.reason;
+    for (const JumpResult& jump : result.jumps) {
+      EXPECT_EQ(jump.outcome, JumpOutcome::landed) << slope << ": jump " << jump.index;
+    }
+  }
 }
 
 TEST(Scenario, AHardPushInFlightIsSeenAsAFall) {
