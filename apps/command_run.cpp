@@ -160,6 +160,10 @@ void say_jump(const JumpResult& jump, std::FILE* people) {
 
 void say_result(const RunResult& result, const RunFolder& folder, std::FILE* people) {
   for (const JumpResult& jump : result.jumps) say_jump(jump, people);
+  if (const JumpTimes times = jump_times(result.jumps); times.count > 0) {
+    std::fprintf(people, "  %.3f s from jump to jump, 95 %% within %.3f s\n", times.mean,
+                 times.p95);
+  }
   std::fprintf(people, "%s: %s after %.1f s and %zu jump%s%s%s (real-time factor %.1f)\n",
                result.scenario.c_str(), std::string(run_outcome_name(result.outcome)).c_str(),
                result.duration, result.jumps.size(), result.jumps.size() == 1 ? "" : "s",

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "control/plan_follower.hpp"
 #include "model/rigid_body.hpp"
 
 namespace hopscotch::apps {
@@ -12,6 +13,13 @@ namespace {
 
 /// A sole that touches again so soon after lift-off has scraped along, not landed [s].
 constexpr double kShortestFlight = 0.05;
+
+/// After touchdown, in which the impact turns the trunk and the landing catches it [s].
+constexpr double kPitchWatched = 0.15;
+
+double pitch_of(const Eigen::Matrix3d& R_WB) {
+  return std::atan2(-R_WB(2, 0), std::hypot(R_WB(0, 0), R_WB(1, 0)));
+}
 
 }  // namespace
 
@@ -34,10 +42,12 @@ void JumpScorer::begin(const sim::PlantTruth& truth, const core::JumpPlan& plan)
   takeoff_ = sim::takeoff_place(truth);
   peaks_ = {};
   liftoff_.reset();
-  touched_ = false;
+  touchdown_.reset();
+  plan_ = plan;
   open_ = true;
   JumpResult jump;
   jump.index = static_cast<int>(jumps_.size()) + 1;
+  jump.start = truth.state.stamp.seconds();
   jump.target = {plan.target.distance, plan.target.height, plan.target.source};
   jump.plan.status = plan.status;
   jump.plan.iterations = plan.iterations;
@@ -64,26 +74,40 @@ void JumpScorer::follow(const sim::PlantTruth& truth, const core::RobotState& us
     jump.takeoff.speed_z = v_WG.z();
     jump.takeoff.estimate_error = (model::composite_body(robot_, used).v_WG - v_WG).norm();
   }
-  if (!contact || !liftoff_ || touched_ || core::is_pushing_off(phase_)) return;
+  if (touchdown_) compare_pitch(truth.state);
+  if (!contact || !liftoff_ || touchdown_ || core::is_pushing_off(phase_)) return;
   const double flight = truth.state.stamp.since(*liftoff_);
   if (flight < kShortestFlight && phase_ == RobotPhase::flight) {
     liftoff_.reset();
   } else {
-    touched_ = true;
+    touchdown_ = truth.state.stamp;
     jump.flight = flight;
+    compare_pitch(truth.state);
   }
+}
+
+void JumpScorer::compare_pitch(const core::RobotState& truth) {
+  const double since = truth.stamp.since(*touchdown_);
+  if (since > kPitchWatched) return;
+  const double planned = control::sample_plan(plan_, plan_.touchdown_time + since).rpy.y();
+  const double error = std::abs(pitch_of(truth.R_WB) - planned);
+  double& largest = jumps_.back().landing.pitch_error;
+  if (!(largest >= error)) largest = error;
 }
 
 void JumpScorer::judge(const sim::PlantTruth& truth) {
   if (!open_) return;
   open_ = false;
   JumpResult& jump = jumps_.back();
-  if (!touched_) {
+  if (!touchdown_) {
     jump.outcome = JumpOutcome::aborted;
     return;
   }
   const sim::LandingVerdict verdict = sim::judge_landing(terrain_, robot_, takeoff_, truth);
-  jump.landing = {verdict.distance, verdict.height, verdict.toe_margin, verdict.heel_margin};
+  jump.landing.distance = verdict.distance;
+  jump.landing.height = verdict.height;
+  jump.landing.toe_margin = verdict.toe_margin;
+  jump.landing.heel_margin = verdict.heel_margin;
   jump.outcome = verdict.over_edge ? JumpOutcome::missed : JumpOutcome::landed;
   if (verdict.over_edge) {
     jump.reason =

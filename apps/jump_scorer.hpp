@@ -36,6 +36,7 @@ class JumpScorer {
  private:
   void begin(const sim::PlantTruth& truth, const core::JumpPlan& plan);
   void follow(const sim::PlantTruth& truth, const core::RobotState& used);
+  void compare_pitch(const core::RobotState& truth);
   void judge(const sim::PlantTruth& truth);
 
   model::RobotParameters robot_;
@@ -45,8 +46,9 @@ class JumpScorer {
   bool open_ = false;  ///< The last jump has not been judged.
   sim::TakeoffPlace takeoff_{};
   sim::LoadPeaks peaks_;
+  core::JumpPlan plan_;  ///< As it was when the jump began: landings reshape the one they follow.
   std::optional<core::Stamp> liftoff_;
-  bool touched_ = false;
+  std::optional<core::Stamp> touchdown_;
 };
 
 }  // namespace hopscotch::apps

@@ -60,6 +60,7 @@ Json jump_json(const JumpResult& jump) {
   return {{"index", jump.index},
           {"outcome", jump_outcome_name(jump.outcome)},
           {"reason", jump.reason},
+          {"start_s", number(jump.start)},
           {"target",
            {{"distance_m", number(jump.target.distance)},
             {"height_m", number(jump.target.height)},
@@ -68,7 +69,8 @@ Json jump_json(const JumpResult& jump) {
            {{"distance_m", number(jump.landing.distance)},
             {"height_m", number(jump.landing.height)},
             {"toe_margin_m", number(jump.landing.toe_margin)},
-            {"heel_margin_m", number(jump.landing.heel_margin)}}},
+            {"heel_margin_m", number(jump.landing.heel_margin)},
+            {"pitch_error_rad", number(jump.landing.pitch_error)}}},
           {"plan", plan_json(jump.plan)},
           {"takeoff",
            {{"speed_x_mps", number(jump.takeoff.speed_x)},
@@ -80,6 +82,10 @@ Json jump_json(const JumpResult& jump) {
             {"speed_ratio", number(jump.peak.speed_ratio)},
             {"power_ratio", number(jump.peak.power_ratio)},
             {"normal_force_N", number(jump.peak.normal_force)}}}};
+}
+
+Json times_json(const JumpTimes& times) {
+  return {{"mean", number(times.mean)}, {"p95", number(times.p95)}, {"n", times.count}};
 }
 
 Json run_json(const RunResult& result) {
@@ -97,6 +103,7 @@ Json run_json(const RunResult& result) {
       {"reason", result.reason},
       {"duration_s", number(result.duration)},
       {"jumps", std::move(jumps)},
+      {"jump_time_s", times_json(jump_times(result.jumps))},
       {"falls", result.falls},
       {"state_error",
        {{"position_m", number(result.position_error)}, {"pitch_rad", number(result.pitch_error)}}},
@@ -106,6 +113,11 @@ Json run_json(const RunResult& result) {
 double number_from(const Json& object, const char* key) {
   const Json& value = object.at(key);
   return value.is_null() ? core::kNaN : value.get<double>();
+}
+
+/// NaN too in folders of programs that did not write it yet.
+double later_number_from(const Json& object, const char* key) {
+  return object.contains(key) ? number_from(object, key) : core::kNaN;
 }
 
 /// The value whose name stands under `key`.
@@ -153,12 +165,14 @@ JumpResult jump_from(const Json& json) {
   jump.index = json.at("index").get<int>();
   jump.outcome = named_from(json, "outcome", kJumpOutcomes, jump_outcome_name);
   jump.reason = json.at("reason").get<std::string>();
+  jump.start = later_number_from(json, "start_s");
   const Json& target = json.at("target");
   jump.target = {number_from(target, "distance_m"), number_from(target, "height_m"),
                  named_from(target, "source", kTargetSources, core::target_source_name)};
   const Json& landing = json.at("landing");
   jump.landing = {number_from(landing, "distance_m"), number_from(landing, "height_m"),
-                  number_from(landing, "toe_margin_m"), number_from(landing, "heel_margin_m")};
+                  number_from(landing, "toe_margin_m"), number_from(landing, "heel_margin_m"),
+                  later_number_from(landing, "pitch_error_rad")};
   jump.plan = plan_from(json.at("plan"));
   const Json& takeoff = json.at("takeoff");
   jump.takeoff = {number_from(takeoff, "speed_x_mps"), number_from(takeoff, "speed_z_mps"),
@@ -222,6 +236,23 @@ Percentiles Percentiles::of(std::vector<double> samples) {
     return samples[static_cast<std::size_t>(std::max(std::ceil(share * n) - 1.0, 0.0))];
   };
   return {rank(0.50), rank(0.99), samples.back()};
+}
+
+JumpTimes jump_times(const std::vector<JumpResult>& jumps) {
+  constexpr double kShare = 0.95;
+  std::vector<double> times;
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < jumps.size(); ++i) {
+    const double time = jumps[i + 1].start - jumps[i].start;
+    if (jumps[i].outcome != JumpOutcome::landed || std::isnan(time)) continue;
+    times.push_back(time);
+    sum += time;
+  }
+  if (times.empty()) return {};
+  std::sort(times.begin(), times.end());
+  const auto n = static_cast<double>(times.size());
+  return {sum / n, times[static_cast<std::size_t>(std::ceil(kShare * n)) - 1],
+          static_cast<int>(times.size())};
 }
 
 std::string to_json(const RunResult& result) {

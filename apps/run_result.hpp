@@ -31,6 +31,9 @@ struct JumpResult {
     double height = core::kNaN;       ///< [m]
     double toe_margin = core::kNaN;   ///< Support ahead of the worse toe; negative: over [m].
     double heel_margin = core::kNaN;  ///< Behind the worse heel [m].
+    /// Largest of the trunk's pitch beside the planned landing's, in the 150 ms from touchdown on,
+    /// by the plant's truth [rad].
+    double pitch_error = core::kNaN;
   };
   struct Plan {
     core::PlanStatus status = core::PlanStatus::bad_input;
@@ -54,7 +57,8 @@ struct JumpResult {
 
   int index = 0;  ///< From 1.
   JumpOutcome outcome = JumpOutcome::aborted;
-  std::string reason;  ///< "code: sentence" or empty.
+  std::string reason;         ///< "code: sentence" or empty.
+  double start = core::kNaN;  ///< When its push-off began [s].
   Target target;
   Landing landing;
   Plan plan;
@@ -102,6 +106,14 @@ struct RunResult {
   double pitch_error = core::kNaN;     ///< [rad]
   RunTiming timing;
 };
+
+/// From the start of a jump that was landed to the start of the next.
+struct JumpTimes {
+  double mean = core::kNaN;  ///< [s]
+  double p95 = core::kNaN;   ///< By nearest rank [s].
+  int count = 0;
+};
+[[nodiscard]] JumpTimes jump_times(const std::vector<JumpResult>& jumps);
 
 /// Indented JSON in the order of the contract, numbers rounded to 1e-6, newline at the end.
 [[nodiscard]] std::string to_json(const RunResult& result);

@@ -24,6 +24,7 @@ class Collector {
       analysis_.cells[i].levels = levels_of(identity.factors, static_cast<std::int64_t>(i));
     }
     values_.resize(identity.factors.size());
+    pitch_errors_.resize(analysis_.cells.size());
   }
 
   void add(const TrialResult& trial) {
@@ -39,6 +40,9 @@ class Collector {
     cell.distance.add(trial.distance);
     cell.landing_error.add(trial.landing_error);
     cell.support_margin.add(trial.support_margin);
+    cell.jump_time.add(trial.jump_time);
+    cell.jump_time_p95.add(trial.jump_time_p95);
+    pitch_errors_[static_cast<std::size_t>(place.cell)].push_back(trial.pitch_error);
     succeeded_.push_back(ok ? 1 : 0);
     for (std::size_t i = 0; i < values_.size(); ++i) values_[i].push_back(trial.values[i]);
     if (ok) {
@@ -57,6 +61,9 @@ class Collector {
         analysis_.failures.begin(), analysis_.failures.end(),
         [](const FailureClass& a, const FailureClass& b) { return a.count > b.count; });
     for (std::size_t i = 0; i < values_.size(); ++i) finish_factor(i);
+    for (std::size_t i = 0; i < pitch_errors_.size(); ++i) {
+      analysis_.cells[i].pitch_error = quantiles_of(std::move(pitch_errors_[i]));
+    }
     std::stable_sort(analysis_.explanations.begin(), analysis_.explanations.end(),
                      [](const Explanation& a, const Explanation& b) { return a.share > b.share; });
   }
@@ -123,7 +130,8 @@ class Collector {
   }
 
   Analysis& analysis_;
-  std::vector<std::vector<double>> values_;  // of each factor, trial by trial
+  std::vector<std::vector<double>> values_;        // of each factor, trial by trial
+  std::vector<std::vector<double>> pitch_errors_;  // of each cell
   std::vector<char> succeeded_;
   std::map<std::string, FailureClass> failures_;
 };
@@ -149,6 +157,14 @@ Json spread_json(const Moments& moments) {
           {"n", moments.count()}};
 }
 
+Json quantiles_json(const Quantiles& quantiles) {
+  return {{"p5", number(quantiles.p5)},
+          {"p25", number(quantiles.p25)},
+          {"p50", number(quantiles.p50)},
+          {"p75", number(quantiles.p75)},
+          {"p95", number(quantiles.p95)}};
+}
+
 Json cell_json(const std::vector<Factor>& factors, const CellSummary& cell) {
   Json json = Json::object();
   for (std::size_t i = 0; i < factors.size(); ++i) {
@@ -165,6 +181,10 @@ Json cell_json(const std::vector<Factor>& factors, const CellSummary& cell) {
   json["distance_m"] = spread_json(cell.distance);
   json["landing_error_m"] = spread_json(cell.landing_error);
   json["support_margin_m"] = spread_json(cell.support_margin);
+  json["pitch_error_rad"] = quantiles_json(cell.pitch_error);
+  json["jump_time_s"] = {{"mean", number(cell.jump_time.mean())},
+                         {"p95", number(cell.jump_time_p95.mean())},
+                         {"n", cell.jump_time.count()}};
   return json;
 }
 

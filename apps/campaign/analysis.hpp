@@ -26,6 +26,9 @@ struct CellSummary {
   Moments distance;                              ///< Flown by the last jump [m].
   Moments landing_error;                         ///< Largest of a trial [m].
   Moments support_margin;                        ///< Least of a trial [m].
+  Moments jump_time;                             ///< Means of trials [s].
+  Moments jump_time_p95;                         ///< Of trials [s].
+  Quantiles pitch_error;                         ///< Of the largest of each trial [rad].
 };
 
 /// Trials that failed for the same first cause.
@@ -67,7 +70,7 @@ struct Analysis {
   [[nodiscard]] double trials_per_minute() const;
 };
 
-/// Reads the whole store once; 48 bytes of memory a trial and 8 more for each factor.
+/// Reads the whole store once; 56 bytes of memory a trial and 8 more for each factor.
 [[nodiscard]] Analysis analyse(const Store& store);
 
 /// What a level of a factor is called; a fixed factor's only one too.

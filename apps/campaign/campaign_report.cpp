@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "apps/html.hpp"
 #include "apps/report_style.hpp"
@@ -14,6 +15,7 @@ constexpr std::size_t kCellsShown = 300;
 constexpr std::size_t kPathCells = 4;
 constexpr std::size_t kHeatMaps = 6;
 constexpr std::size_t kHeatLevels = 25;
+constexpr std::size_t kSpreadCells = 16;
 
 constexpr const char* kTableStyle =
     "table{border-collapse:collapse;font-size:.9rem;font-variant-numeric:tabular-nums}"
@@ -102,6 +104,10 @@ std::string opening(const ReportContent& content) {
          tile(fixed(analysis.trials_per_minute(), 0), "trials a minute") + "</div>\n";
 }
 
+std::string degrees(double angle) {
+  return fixed(180.0 / std::numbers::pi * angle, 1);
+}
+
 std::string cell_row(const Analysis& analysis, const CellSummary& cell) {
   std::string row = "<tr>";
   for (std::size_t f = 0; f < analysis.identity.factors.size(); ++f) {
@@ -117,7 +123,10 @@ std::string cell_row(const Analysis& analysis, const CellSummary& cell) {
          cell_of(std::to_string(cell.tally.succeeded)) +
          cell_of(std::to_string(cell.rightly_refused)) + cell_of(percent(cell.tally.rate())) +
          cell_of(interval_text(cell.tally)) + cell_of(spread(cell.distance)) +
-         cell_of(spread(cell.landing_error)) + cell_of(spread(cell.support_margin)) + "</tr>";
+         cell_of(spread(cell.landing_error)) + cell_of(spread(cell.support_margin)) +
+         cell_of(degrees(cell.pitch_error.p50) + ", " + degrees(cell.pitch_error.p95)) +
+         cell_of(fixed(cell.jump_time.mean(), 3) + ", " + fixed(cell.jump_time_p95.mean(), 3)) +
+         "</tr>";
 }
 
 std::string cells_section(const Analysis& analysis) {
@@ -129,12 +138,17 @@ std::string cells_section(const Analysis& analysis) {
   head +=
       "<th>trials</th><th>succeeded</th><th>rightly refused</th><th>rate</th><th>95 %</th><th>last "
       "jump [mm]</th>"
-      "<th>landing error [mm]</th><th>margin [mm]</th>";
+      "<th>landing error [mm]</th><th>margin [mm]</th><th>pitch error [°]</th>"
+      "<th>time a jump [s]</th>";
   std::string rows;
   for (std::size_t i = 0; i < analysis.cells.size() && i < kCellsShown; ++i) {
     rows += cell_row(analysis, analysis.cells[i]);
   }
-  std::string lead = "Mean ± standard deviation over the trials of a cell.";
+  std::string lead =
+      "Mean ± standard deviation over the trials of a cell. Pitch error: the trunk's beside the "
+      "plan's, largest in the 150 ms after a touchdown; median and 95 % of the trials. Time from "
+      "the "
+      "start of a jump to the next one's: mean and 95 %.";
   if (analysis.cells.size() > kCellsShown) {
     lead += " The first " + std::to_string(kCellsShown) + "; all are in cells.csv.";
   }
@@ -255,6 +269,21 @@ std::string cell_title(const Analysis& analysis, std::size_t cell) {
   return name;
 }
 
+/// The cells side by side where few enough are compared.
+void add_pitch_errors(const Analysis& analysis, std::vector<NamedFigure>& figures) {
+  if (analysis.cells.size() < 2 || analysis.cells.size() > kSpreadCells) return;
+  std::vector<NamedSpread> spreads;
+  for (std::size_t cell = 0; cell < analysis.cells.size(); ++cell) {
+    Quantiles spread = analysis.cells[cell].pitch_error;
+    for (double* value : {&spread.p5, &spread.p25, &spread.p50, &spread.p75, &spread.p95}) {
+      *value *= 180.0 / std::numbers::pi;
+    }
+    spreads.push_back({cell_title(analysis, cell), spread});
+  }
+  const std::string drawn = spread_figure("Pitch error in the 150 ms after touchdown [°]", spreads);
+  if (!drawn.empty()) figures.push_back({"pitch-error", drawn});
+}
+
 void add_paths(const Analysis& analysis, const Store& store, std::vector<NamedFigure>& figures) {
   std::vector<std::vector<FlownPath>> paths(std::min(kPathCells, analysis.cells.size()));
   store.for_each_path(static_cast<std::int64_t>(paths.size()), [&](const TrialResult& trial) {
@@ -280,6 +309,7 @@ std::vector<NamedFigure> campaign_figures(const Analysis& analysis, const Store&
     if (!drawn.empty()) figures.push_back({"success-" + factor.name, drawn});
   }
   add_heat_maps(analysis, figures);
+  add_pitch_errors(analysis, figures);
   const std::string failures = failure_figure(analysis);
   if (!failures.empty()) figures.push_back({"failures", failures});
   return figures;

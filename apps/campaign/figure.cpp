@@ -22,6 +22,7 @@ constexpr const char* kStyle =
     ".hc .trend{fill:none;stroke:#1f5fa8;stroke-width:1;opacity:.45}"
     ".hc .path{fill:none;stroke:#1f5fa8;stroke-width:.8;opacity:.3}"
     ".hc .fell{fill:none;stroke:#b3261e;stroke-width:1;opacity:.8}"
+    ".hc .box{fill:#cfe0f2;stroke:#1f5fa8}.hc .median{stroke:#1c2430;stroke-width:2.4}"
     ".hc .bar{fill:#b3261e;opacity:.75}</style>";
 
 std::string svg(double width, double height, const std::string& content) {
@@ -216,6 +217,39 @@ std::string path_figure(const std::string& heading, const std::vector<FlownPath>
             path_data(points) + "\"/>";
   }
   return svg(kWidth, plane.height, title(heading) + axes(plane, "x [m]", "CoM z [m]") + good + bad);
+}
+
+std::string spread_figure(const std::string& heading, const std::vector<NamedSpread>& spreads) {
+  constexpr double kWidth = 620.0;
+  constexpr double kRow = 30.0;
+  constexpr double kNames = 210.0;
+  constexpr double kHalfBox = 7.0;
+  double most = 0.0;
+  for (const auto& [name, spread] : spreads) most = std::max(most, spread.p95);  // NaN: not larger
+  if (most <= 0.0) return "";
+  const double bottom = kTop + kRow * static_cast<double>(spreads.size());
+  const auto u = [&](double x) { return kNames + x / (1.05 * most) * (kWidth - kNames - kRight); };
+  std::string content = title(heading);
+  const std::vector<double> ticks = axis_ticks(0.0, 1.05 * most, 7);
+  for (const double x : ticks) {
+    content += line("grid", u(x), kTop, u(x), bottom);
+    content += text("middle", u(x), bottom + 16.0, fixed(x, tick_decimals(ticks)));
+  }
+  double v = kTop + 0.5 * kRow;
+  for (const auto& [name, spread] : spreads) {
+    content += text("end", kNames - 8.0, v + 4.0, name);
+    if (!std::isnan(spread.p50)) {
+      content += line("whisker", u(spread.p5), v, u(spread.p95), v);
+      content += "<rect class=\"box\" x=\"" + fixed(u(spread.p25), 1) + "\" y=\"" +
+                 fixed(v - kHalfBox, 1) + "\" width=\"" + fixed(u(spread.p75) - u(spread.p25), 1) +
+                 "\" height=\"" + fixed(2.0 * kHalfBox, 1) + "\"/>";
+      content += line("median", u(spread.p50), v - kHalfBox, u(spread.p50), v + kHalfBox);
+    }
+    v += kRow;
+  }
+  return svg(kWidth, bottom + 40.0,
+             content + text("middle", 0.5 * (kNames + kWidth), bottom + 34.0,
+                            "line: 5 to 95 % of the trials, box: 25 to 75 %, mark: median"));
 }
 
 std::string failure_figure(const Analysis& analysis) {

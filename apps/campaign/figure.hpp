@@ -27,6 +27,16 @@ struct FlownPath {
 [[nodiscard]] std::string path_figure(const std::string& title,
                                       const std::vector<FlownPath>& paths);
 
+/// What the trials of a cell spread over.
+struct NamedSpread {
+  std::string name;
+  Quantiles spread;
+};
+/// One row a spread: a line from 5 to 95 %, a box from 25 to 75 %, a mark at the median. Empty if
+/// there is no number at all.
+[[nodiscard]] std::string spread_figure(const std::string& heading,
+                                        const std::vector<NamedSpread>& spreads);
+
 /// Failure classes as bars.
 [[nodiscard]] std::string failure_figure(const Analysis& analysis);
 

@@ -119,6 +119,17 @@ double Moments::deviation() const {
   return count_ > 1 ? std::sqrt(squares_ / static_cast<double>(count_ - 1)) : kNaN;
 }
 
+Quantiles quantiles_of(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  if (values.empty()) return {kNaN, kNaN, kNaN, kNaN, kNaN};
+  std::sort(values.begin(), values.end());
+  const auto rank = [&](double share) {
+    const double n = std::ceil(share * static_cast<double>(values.size()));
+    return values[static_cast<std::size_t>(std::max(n - 1.0, 0.0))];
+  };
+  return {rank(0.05), rank(0.25), rank(0.50), rank(0.75), rank(0.95)};
+}
+
 std::vector<double> bin_boundaries(std::vector<double> values, int bins) {
   std::sort(values.begin(), values.end());
   std::vector<double> distinct = values;

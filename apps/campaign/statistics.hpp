@@ -49,6 +49,17 @@ inline constexpr int kExplainBins = 8;
 /// Probability that a chi-squared variable exceeds x.
 [[nodiscard]] double chi_squared_tail(double x, int degrees);
 
+/// How values lie about their middle: 5, 25, 50, 75 and 95 % of them are not larger, by nearest
+/// rank; NaN without values. Values that are not a number are left out.
+struct Quantiles {
+  double p5 = 0.0;
+  double p25 = 0.0;
+  double p50 = 0.0;
+  double p75 = 0.0;
+  double p95 = 0.0;
+};
+[[nodiscard]] Quantiles quantiles_of(std::vector<double> values);
+
 /// Mean, standard deviation (n - 1) and count, added up one by one (Welford).
 class Moments {
  public:

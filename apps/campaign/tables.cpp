@@ -60,7 +60,9 @@ std::string trials_csv(const Store& store) {
 std::string cells_csv(const Analysis& analysis) {
   std::string csv = "cell";
   for (const Factor& factor : analysis.identity.factors) csv += "," + factor.name;
-  csv += ",trials,succeeded,rate,wilson95_low,wilson95_high,distance_mean_m,distance_deviation_m\n";
+  csv +=
+      ",trials,succeeded,rate,wilson95_low,wilson95_high,distance_mean_m,distance_deviation_m,"
+      "pitch_error_p50_rad,pitch_error_p95_rad,jump_time_mean_s,jump_time_p95_s\n";
   for (std::size_t i = 0; i < analysis.cells.size(); ++i) {
     const CellSummary& cell = analysis.cells[i];
     const Interval interval = cell.tally.interval();
@@ -69,8 +71,10 @@ std::string cells_csv(const Analysis& analysis) {
       csv += "," + level_field(analysis.identity.factors[f], cell.levels[f]);
     }
     csv += "," + std::to_string(cell.tally.trials) + "," + std::to_string(cell.tally.succeeded);
-    for (const double value : {cell.tally.rate(), interval.low, interval.high, cell.distance.mean(),
-                               cell.distance.deviation()}) {
+    for (const double value :
+         {cell.tally.rate(), interval.low, interval.high, cell.distance.mean(),
+          cell.distance.deviation(), cell.pitch_error.p50, cell.pitch_error.p95,
+          cell.jump_time.mean(), cell.jump_time_p95.mean()}) {
       csv += "," + field(value);
     }
     csv += "\n";

@@ -45,6 +45,7 @@ void include_jump(const JumpResult& jump, TrialResult& result) {
   raise(result.power_ratio, jump.peak.power_ratio);
   raise(result.normal_force, jump.peak.normal_force);
   raise(result.estimate_error, jump.takeoff.estimate_error);
+  raise(result.pitch_error, jump.landing.pitch_error);
   result.takeoff_x = jump.takeoff.speed_x;
   result.takeoff_z = jump.takeoff.speed_z;
 }
@@ -71,6 +72,9 @@ void include_run(const RunResult& run, TrialResult& result) {
   result.jumps = static_cast<int>(run.jumps.size());
   result.duration = run.duration;
   for (const JumpResult& jump : run.jumps) include_jump(jump, result);
+  const JumpTimes times = jump_times(run.jumps);
+  result.jump_time = times.mean;
+  result.jump_time_p95 = times.p95;
 }
 
 std::string to_line(const TrialResult& result) {

@@ -35,6 +35,9 @@ struct TrialResult {
   double takeoff_x = core::kNaN;       ///< Of the last jump [m/s].
   double takeoff_z = core::kNaN;       ///< [m/s]
   double estimate_error = core::kNaN;  ///< Largest, of the speed at takeoff [m/s].
+  double pitch_error = core::kNaN;     ///< Largest, of the trunk after a touchdown [rad].
+  double jump_time = core::kNaN;       ///< Mean from a jump's start to the next one's [s].
+  double jump_time_p95 = core::kNaN;   ///< [s]
   double wall = core::kNaN;            ///< Time it took [s].
   std::vector<double> values;          ///< Of the campaign's factors.
   /// Path of the CoM, x and z in W [mm], every `kPathPeriod`; empty for most trials.
@@ -52,7 +55,7 @@ struct Metric {
   std::string_view name;
   double TrialResult::*value;
 };
-inline constexpr std::array<Metric, 12> kMetrics{{
+inline constexpr std::array<Metric, 15> kMetrics{{
     {"duration_s", &TrialResult::duration},
     {"target_m", &TrialResult::target_distance},
     {"distance_m", &TrialResult::distance},
@@ -65,6 +68,9 @@ inline constexpr std::array<Metric, 12> kMetrics{{
     {"takeoff_x_mps", &TrialResult::takeoff_x},
     {"takeoff_z_mps", &TrialResult::takeoff_z},
     {"estimate_error_mps", &TrialResult::estimate_error},
+    {"pitch_error_rad", &TrialResult::pitch_error},
+    {"jump_time_s", &TrialResult::jump_time},
+    {"jump_time_p95_s", &TrialResult::jump_time_p95},
 }};
 
 /// Takes over what the run says: outcome, first cause, metrics.

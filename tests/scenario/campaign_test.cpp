@@ -62,6 +62,25 @@ TEST_F(Campaign, KilledWorkersAndParentEndWithTheStoreOfAnUndisturbedRun) {
   EXPECT_EQ(table("killed"), table("undisturbed"));
 }
 
+TEST_F(Campaign, ComparesThePitchErrorOfItsCellsAndTimesItsJumps) {
+  const fs::path spec = folder_.write("pair.yaml",
+                                      "name: pair\n"
+                                      "scenario: {family: flat, jumps: 2, jump_m: 0.40}\n"
+                                      "perception: truth\nstate: truth\ntrials: 1\n"
+                                      "keep: {failures: 0, successes: 0}\n"
+                                      "vary: {ablation: {grid: [none, no-landing-plan]}}\n");
+  ASSERT_EQ(run(spec, "out"), 0) << text_of(log());
+  const std::string figure = text_of(folder_.path() / "out/figures/pitch-error.svg");
+  EXPECT_NE(figure.find("ablation = no-landing-plan"), std::string::npos) << figure;
+  EXPECT_NE(figure.find("class=\"median\""), std::string::npos) << figure;
+  const Store store(folder_.path() / "out/trials.sqlite");
+  const apps::campaign::TrialResult whole = store.find(0).value();
+  const apps::campaign::TrialResult less = store.find(1).value();
+  EXPECT_LT(whole.pitch_error, less.pitch_error);
+  EXPECT_GT(whole.jump_time, 1.0);
+  EXPECT_LE(whole.jump_time, 1.2);
+}
+
 TEST_F(Campaign, CtrlCSavesAndSaysHowToGoOn) {
   const fs::path spec = folder_.write("short.yaml", short_campaign(50));
   Process campaign(words(spec, "out", {"--jobs", "1"}), log());

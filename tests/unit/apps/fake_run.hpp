@@ -147,8 +147,9 @@ inline RunResult result() {
     JumpResult jump;
     jump.index = index;
     jump.outcome = JumpOutcome::landed;
+    jump.start = kStand + (kStand + kJump) * (index - 1);
     jump.target = {kDistance, 0.0, core::TargetSource::perception};
-    jump.landing = {0.395, 0.001, 0.06, 0.05};
+    jump.landing = {0.395, 0.001, 0.06, 0.05, 0.08};
     jump.plan = {core::PlanStatus::solved, 18, index > 1, kJump, "knee power", 0.12};
     jump.takeoff = {1.1, 1.6, core::kNaN};
     jump.flight = kFlight;

@@ -31,6 +31,8 @@ TEST(FlightTrial, LandsWhereThePlanSays) {
   EXPECT_EQ(flown.jump.outcome, JumpOutcome::landed) << flown.jump.reason;
   EXPECT_LT(flown.landing_error, kAhead);
   EXPECT_NEAR(flown.jump.flight, 0.26, 0.03);
+  EXPECT_GT(flown.jump.landing.pitch_error, 0.001);  // no impact leaves the trunk alone
+  EXPECT_LT(flown.jump.landing.pitch_error, 0.2);
 }
 
 TEST(FlightTrial, FliesToTheSideAndTurns) {

@@ -127,5 +127,37 @@ TEST(Percentiles, AreByNearestRank) {
   EXPECT_TRUE(std::isnan(Percentiles::of({}).max));
 }
 
+TEST(JumpTimes, LastFromTheStartOfALandedJumpToTheNext) {
+  std::vector<JumpResult> jumps(22);
+  for (std::size_t i = 0; i < jumps.size(); ++i) {
+    jumps[i].start = 1.2 * static_cast<double>(i);
+    jumps[i].outcome = JumpOutcome::landed;
+  }
+  jumps[5].outcome = JumpOutcome::aborted;                      // its time says nothing
+  for (std::size_t i = 11; i < 22; ++i) jumps[i].start += 0.2;  // the tenth took longer
+  for (std::size_t i = 21; i < 22; ++i) jumps[i].start += 0.1;  // and so did the last but one
+  const JumpTimes times = jump_times(jumps);
+  EXPECT_EQ(times.count, 20);
+  EXPECT_NEAR(times.mean, 1.2 + 0.3 / 20.0, 1e-12);
+  EXPECT_NEAR(times.p95, 1.3, 1e-12);
+}
+
+TEST(JumpTimes, AreUnknownOfASingleJump) {
+  EXPECT_TRUE(std::isnan(jump_times(std::vector<JumpResult>(1)).mean));
+  EXPECT_TRUE(std::isnan(jump_times({}).p95));
+}
+
+TEST(RunResult, FoldersOfOlderProgramsAreRead) {
+  std::string text = to_json(fake::result());
+  for (const char* key : {"\"start_s\"", "\"pitch_error_rad\""}) {
+    for (std::size_t at = text.find(key); at != std::string::npos; at = text.find(key)) {
+      text.replace(at, std::string(key).size(), "\"x\"");
+    }
+  }
+  const RunResult read = run_result_from_json(text, "old");
+  EXPECT_TRUE(std::isnan(read.jumps.at(0).start));
+  EXPECT_TRUE(std::isnan(read.jumps.at(0).landing.pitch_error));
+}
+
 }  // namespace
 }  // namespace hopscotch::apps

@@ -105,6 +105,19 @@ TEST(Moments, AgreeWithTheTextbook) {
   EXPECT_NEAR(moments.deviation(), std::sqrt(32.0 / 7.0), 1e-12);
 }
 
+TEST(Quantiles, AreByNearestRankAndLeaveOutWhatWasNotMeasured) {
+  std::vector<double> values{std::nan("")};
+  for (int i = 20; i >= 1; --i) values.push_back(i);
+  const Quantiles quantiles = quantiles_of(values);
+  EXPECT_EQ(quantiles.p5, 1.0);
+  EXPECT_EQ(quantiles.p25, 5.0);
+  EXPECT_EQ(quantiles.p50, 10.0);
+  EXPECT_EQ(quantiles.p75, 15.0);
+  EXPECT_EQ(quantiles.p95, 19.0);
+  EXPECT_EQ(quantiles_of({3.0}).p5, 3.0);
+  EXPECT_TRUE(std::isnan(quantiles_of({std::nan("")}).p50));
+}
+
 TEST(Bins, HoldAboutEqualCountsAndKeepEqualValuesTogether) {
   std::vector<double> values;
   for (int i = 0; i < 100; ++i) values.push_back(i);
