@@ -1,13 +1,13 @@
 #pragma once
 
 #include <semaphore.h>
-#include <time.h>
 
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <functional>
 #include <thread>
 #include <utility>
