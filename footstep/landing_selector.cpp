@@ -127,11 +127,20 @@ void list_rejected(const JudgedFoothold& judged, TargetChoice& choice) {
   choice.rejected[choice.rejected_count++] = {judged.foothold.placement.x, judged.why};
 }
 
+/// What sticks out of the ground under a sole makes it no place to stand, however flat the rest.
+void look_under_soles(const StepRules& rules, Foothold& foothold) {
+  if (foothold.why != Reason::none) return;
+  if (rules.mapped.carries(foothold.placement.x, rules.half_length, foothold.height)) return;
+  foothold.why = Reason::no_safe_target;
+  foothold.supported = false;
+}
+
 std::vector<JudgedFoothold> judge_all(const StepRules& rules, const Takeoff& takeoff,
                                       const std::vector<Foothold>& footholds) {
   std::vector<JudgedFoothold> judged;
   judged.reserve(footholds.size());
-  for (const Foothold& foothold : footholds) {
+  for (Foothold foothold : footholds) {
+    look_under_soles(rules, foothold);
     const Reason why =
         foothold.why != Reason::none ? foothold.why : step_verdict(rules, takeoff, foothold);
     judged.push_back({foothold, why});
@@ -215,6 +224,7 @@ void choose_wanted(const StepRules& rules, const StanceOnMap& stance,
   Foothold foothold =
       score_foothold(rules.config.foothold, stance,
                      {.x = wanted.distance, .y = wanted.lateral, .yaw = wanted.yaw});
+  look_under_soles(rules, foothold);
   JudgedFoothold judged{foothold, foothold.why};
   const Takeoff takeoff = present_takeoff(terrain);
   if (judged.why == Reason::none) judged.why = step_verdict(rules, takeoff, foothold);

@@ -12,6 +12,11 @@ using core::TerrainProfile;
 
 constexpr std::size_t kSamples = TerrainProfile::kSamples;
 
+// Ground under a sole; a little stricter than what the planner refuses.
+constexpr double kUneven = 0.038;     // above or below it [m]
+constexpr double kSoleInset = 0.008;  // from toe and heel, where maps blur edges [m]
+constexpr double kSoleMiddle = 0.03;  // either side of its centre [m]
+
 struct Stretch {
   std::size_t first = 0;
   std::size_t behind = 0;  ///< One past the last sample.
@@ -55,6 +60,15 @@ double BoundedProfile::highest(double from_x, double to_x) const {
   const int first = TerrainProfile::sample(from_x);
   const int last = TerrainProfile::sample(to_x);
   return *std::max_element(profile.upper.begin() + first, profile.upper.begin() + last + 1);
+}
+
+bool BoundedProfile::carries(double sole_x, double half_length, double height) const {
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double from_sole = std::abs(TerrainProfile::x(static_cast<int>(i)) - sole_x);
+    if (from_sole <= half_length - kSoleInset && profile.upper[i] - height > kUneven) return false;
+    if (from_sole <= kSoleMiddle && height - profile.mean[i] > kUneven) return false;
+  }
+  return true;
 }
 
 BoundedProfile bound_profile(const ProfileConfig& config, const TerrainProfile& seen) {

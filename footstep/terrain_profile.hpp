@@ -18,6 +18,10 @@ struct BoundedProfile {
   [[nodiscard]] bool is_bounded(double from_x, double to_x) const;
   /// Highest bound between two places in S [m].
   [[nodiscard]] double highest(double from_x, double to_x) const;
+  /// Whether a sole on ground of this height [m] would stand on it: nothing rises under it but what
+  /// toe and heel blur, and its middle does not hang over something lower. Few cells that stick out
+  /// do not turn the plane that the soles are fitted to, and yet no plan may put a foot into them.
+  [[nodiscard]] bool carries(double sole_x, double half_length, double height) const;
 };
 
 /// Fills what was not observed. Between two observed rims the ground is taken to rise no higher

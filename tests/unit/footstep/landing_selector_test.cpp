@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "footstep/reachability.hpp"
 #include "tests/unit/footstep/known_course.hpp"
@@ -133,6 +134,30 @@ TEST(LandingSelector, ProfileOfTheTargetIsFiniteEverywhere) {
     EXPECT_TRUE(std::isfinite(choice.target->profile.mean[i])) << i;
     EXPECT_TRUE(std::isfinite(choice.target->profile.lower[i])) << i;
   }
+}
+
+/// One cell that sticks out does not turn the plane under the soles, and the planner would put no
+/// foot into it: another place is chosen, and this one is named.
+TEST(LandingSelector, NoSoleComesDownOnWhatSticksOut) {
+  KnownCourse course(kFlat);
+  const auto cell_at = [&](double x, double y) -> core::TerrainCell& {
+    return course.map.at(static_cast<int>((x - course.map.origin_x) / course.map.resolution),
+                         static_cast<int>((y - course.map.origin_y) / course.map.resolution));
+  };
+  core::TerrainCell& sticking_out = cell_at(0.40, 0.098);
+  sticking_out.height += 0.06F;
+  sticking_out.upper += 0.06F;
+  course.look_again();
+  const core::TargetChoice choice = course.choose();
+  ASSERT_TRUE(choice.target) << choice.refusal.text();
+  EXPECT_GT(std::abs(choice.target->distance - 0.40), 0.06);
+  LandingTask task;
+  task.target = core::TargetOverride{.distance = 0.40};
+  const core::TargetChoice wanted = course.choose(task);
+  ASSERT_FALSE(wanted.target);
+  EXPECT_EQ(wanted.refusal.reason, Reason::no_safe_target);
+  EXPECT_NE(wanted.refusal.sentence.find("no flat ground"), std::string::npos)
+      << wanted.refusal.sentence;
 }
 
 struct RefusedCourse {
