@@ -22,6 +22,9 @@ double beyond(double deviation, double dead) {
   return std::copysign(std::max(0.0, std::abs(deviation) - dead), deviation);
 }
 
+/// How far the trunk of an undisturbed jump turns beside its plan [rad].
+constexpr double kScatter = 0.06;
+
 double square(double x) {
   return x * x;
 }
@@ -179,10 +182,11 @@ void keep_soles(const JointGains& gains, const core::RobotState& state,
                 const core::JumpKnot& planned, core::JointVector& q) noexcept {
   const Eigen::Vector3d rpy = model::rpy_from_rotation(state.R_WB);
   const double pitch = rpy.y() - planned.rpy.y();
-  const double share = gains.flight_share;
+  // Legs of an undisturbed jump keep their planned directions: further on they land too far.
+  const double further = (gains.flight_share - 1.0) * beyond(pitch, kScatter);
   for (const core::Leg leg : core::kAllLegs) {
-    q[joint_index(leg, Joint::hip_pitch)] -= share * pitch;
-    q[joint_index(leg, Joint::ankle)] -= (1.0 - share) * pitch;
+    q[joint_index(leg, Joint::hip_pitch)] -= pitch + further;
+    q[joint_index(leg, Joint::ankle)] += further;
     q[joint_index(leg, Joint::hip_roll)] -= rpy.x() - planned.rpy.x();
   }
 }
