@@ -25,8 +25,15 @@ struct BenchSetup {
 
 /// Cold and warm solves over a grid of reachable targets; times are thread CPU time.
 [[nodiscard]] nlohmann::ordered_json bench_planner(const BenchSetup& setup);
-/// Plans to `flights` of the targets from standing, and how MuJoCo flies them on the true state.
-[[nodiscard]] nlohmann::ordered_json bench_flights(const BenchSetup& setup, int flights);
+/// Which jumps are flown: so many of the targets from standing, spread evenly, or with a seed
+/// drawn at random from between them.
+struct FlightSample {
+  int flights = 0;
+  std::uint64_t seed = 0;  ///< 0: evenly.
+};
+/// Plans to a sample of the targets, and how MuJoCo flies them on the true state.
+[[nodiscard]] nlohmann::ordered_json bench_flights(const BenchSetup& setup,
+                                                   const FlightSample& sample);
 /// The planner's formulation beside those it is compared with: solve time, and what MuJoCo makes of
 /// what each promises, for three jumps.
 [[nodiscard]] nlohmann::ordered_json bench_formulations(const BenchSetup& setup);

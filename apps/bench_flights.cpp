@@ -7,6 +7,7 @@
 #include "apps/flight_trial.hpp"
 #include "apps/run_result.hpp"
 #include "apps/shipped_jumps.hpp"
+#include "sim/random.hpp"
 
 namespace hopscotch::apps {
 
@@ -17,20 +18,38 @@ namespace {
 /// Landings farther from their target are named one by one [m].
 constexpr double kLandingErrorWanted = 0.02;
 
-/// `count` of the targets from standing, spread evenly over the file. Without those whose step up
-/// begins under the toes: there is nothing to stand on.
-std::vector<BenchTarget> sampled(const model::RobotParameters& robot, int count) {
-  constexpr double kToeRoom = 0.01;  // [m]
-  const double toe = 0.5 * (robot.toe + robot.heel) + kToeRoom;
+std::vector<BenchTarget> standing_targets() {
   std::vector<BenchTarget> standing;
   for (const BenchTarget& target : read_targets()) {
-    const bool flyable = target.height == 0.0 || step_of(target).edge > toe;
-    if (flyable && target.start == planner::StartKind::stand) standing.push_back(target);
+    if (target.start == planner::StartKind::stand) standing.push_back(target);
   }
+  return standing;
+}
+
+std::vector<BenchTarget> spread(const std::vector<BenchTarget>& targets, std::size_t count) {
   std::vector<BenchTarget> chosen;
-  const std::size_t wanted = std::min(static_cast<std::size_t>(count), standing.size());
+  const std::size_t wanted = std::min(count, targets.size());
   for (std::size_t i = 0; i < wanted; ++i) {
-    chosen.push_back(standing[i * standing.size() / wanted]);
+    chosen.push_back(targets[i * targets.size() / wanted]);
+  }
+  return chosen;
+}
+
+/// Targets moved by up to half of the grid that they come from; level ones stay level.
+std::vector<BenchTarget> drawn(const std::vector<BenchTarget>& targets,
+                               const FlightSample& sample) {
+  constexpr double kAhead = 0.010;  // [m]
+  constexpr double kUp = 0.025;     // [m]
+  sim::Random random(sample.seed);
+  std::vector<BenchTarget> chosen;
+  for (int i = 0; i < sample.flights; ++i) {
+    const double share = 0.5 * (random.uniform() + 1.0);
+    BenchTarget target =
+        targets[static_cast<std::size_t>(share * static_cast<double>(targets.size()))];
+    target.distance += kAhead * random.uniform();
+    const double up = kUp * random.uniform();
+    if (target.height != 0.0) target.height += up;
+    chosen.push_back(target);
   }
   return chosen;
 }
@@ -62,10 +81,13 @@ struct Tally {
 
 }  // namespace
 
-nlohmann::ordered_json bench_flights(const BenchSetup& setup, int flights) {
+nlohmann::ordered_json bench_flights(const BenchSetup& setup, const FlightSample& sample) {
   planner::JumpPlanner planner(setup.config.planner, setup.robot,
                                shipped_jumps(setup.robot.name, setup.config.planner.steps));
-  const std::vector<BenchTarget> targets = sampled(setup.robot, flights);
+  const std::vector<BenchTarget> standing = standing_targets();
+  const std::vector<BenchTarget> targets =
+      sample.seed == 0 ? spread(standing, static_cast<std::size_t>(sample.flights))
+                       : drawn(standing, sample);
   Tally tally;
   for (const BenchTarget& target : targets) {
     const core::Result<core::JumpPlan> plan = planner.plan(request_for(setup, target));

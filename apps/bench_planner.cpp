@@ -106,6 +106,7 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
   planner::JumpPlanner planner(setup.config.planner, setup.robot,
                                shipped_jumps(setup.robot.name, setup.config.planner.steps));
   PlannerSamples cold;
+  PlannerSamples closed_form;
   PlannerSamples warm;
   PlannerSamples ipopt;
   IterationSamples iterations(setup);
@@ -113,6 +114,9 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const planner::PlanRequest request = request_for(setup, targets[i]);
     cold.plan(planner, request);
+    planner::PlanRequest from_guess = request;
+    from_guess.guess = planner::StartGuess::kinematic;
+    closed_form.plan(planner, from_guess);
     iterations.solve(request);
     BenchTarget neighbour = targets[i];
     neighbour.distance += i % 2 == 0 ? kMoved : -kMoved;
@@ -130,13 +134,16 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
   return {{"n", targets.size()},
           {"solver", "chain"},
           {"cold_ms", percentile_group(cold.plan_ms, 1.0)},
+          {"cold_closed_form_ms", percentile_group(closed_form.plan_ms, 1.0)},
           {"warm_ms", percentile_group(warm.plan_ms, 1.0)},
           {"cold_iterations", percentile_group(cold.iterations, 1.0)},
+          {"cold_closed_form_iterations", percentile_group(closed_form.iterations, 1.0)},
           {"warm_iterations", percentile_group(warm.iterations, 1.0)},
           {"iteration_ms", percentile_group(iterations.iteration_ms, 1.0)},
           {"ipopt_ms", percentile_group(ipopt.plan_ms, 1.0)},
           {"success", cold.planned / count},  // certified plans
           {"certified", cold.planned / count},
+          {"closed_form_success", closed_form.planned / count},
           {"solved_from_guess", iterations.solved / count},
           {"rungs", cold.rungs},
           {"dense_violation", percentile_group(cold.dense_violation, 1.0)},

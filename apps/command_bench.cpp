@@ -16,7 +16,7 @@ struct BenchOptions {
   std::string what;
   std::filesystem::path qps;
   int jumps = 20;
-  int fly = 0;
+  FlightSample fly;
   bool compare = false;
   bool json = false;
 };
@@ -44,7 +44,7 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
   const BenchSetup setup{ProgramConfig::load(config_directory() / "hopscotch.yaml"),
                          model::RobotParameters::load(robot_file("hector"))};
   if (options.what == "planner") {
-    if (options.fly > 0) return bench_flights(setup, options.fly);
+    if (options.fly.flights > 0) return bench_flights(setup, options.fly);
     return options.compare ? bench_formulations(setup) : bench_planner(setup);
   }
   if (options.what == "mpc") return bench_mpc(setup, options.qps);
@@ -105,8 +105,10 @@ void add_bench_command(CLI::App& app, Action& action) {
   command->add_option("--jumps", options->jumps, "estimator: so many jumps")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--fly", options->fly, "planner: plan and fly so many of its targets")
+  command->add_option("--fly", options->fly.flights, "planner: plan and fly so many of its targets")
       ->check(CLI::Range(1, 1000));
+  command->add_option("--seed", options->fly.seed,
+                      "planner --fly: draw jumps from between the targets; 0: targets, evenly");
   command->add_flag("--compare", options->compare,
                     "planner: against other formulations of the same jumps, flown in MuJoCo");
   command->add_flag("--json", options->json, "Print one JSON object");
@@ -115,7 +117,7 @@ void add_bench_command(CLI::App& app, Action& action) {
       if (options->compare && options->what != "planner") {
         throw core::ConfigError("bench: --compare is an option of planner");
       }
-      if (options->fly > 0 && options->what != "planner") {
+      if (options->fly.flights > 0 && options->what != "planner") {
         throw core::ConfigError("bench: --fly is an option of planner");
       }
       nlohmann::ordered_json json;

@@ -62,7 +62,7 @@ planner::PlanRequest request_of(const PlanOptions& options, const ProgramConfig&
   return {.start = planner::standing_state(*pose),
           .target = planner::step_target(options.step, robot),
           .final_posture = config.stand_posture,
-          .guess = options.cold ? planner::StartGuess::kinematic : planner::StartGuess::previous,
+          .guess = options.cold ? planner::StartGuess::library : planner::StartGuess::previous,
           .solver = options.solver == "ipopt" ? planner::Solver::ipopt : planner::Solver::chain,
           .formulation = *planner::formulation_from(options.model)};
 }
@@ -193,7 +193,9 @@ void add_plan_command(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"chain", "ipopt"}))
       ->capture_default_str();
   command->add_option("--repeat", options->repeat, "Solve so often")->check(CLI::Range(1, 10000));
-  command->add_flag("--cold", options->cold, "Each solve from the closed-form first guess");
+  command->add_flag("--cold", options->cold,
+                    "Each solve as the first: from the library or, without a jump close by, from "
+                    "the closed form");
   command->add_option("--config", options->config, "Tuning")->capture_default_str();
   command->add_flag("--fly", options->fly,
                     "Fly it in MuJoCo, on the true state, and say how it went");

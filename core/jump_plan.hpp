@@ -65,7 +65,7 @@ struct CertificateEntry {
 };
 
 struct Certificate {
-  static constexpr std::size_t kMaxEntries = 24;
+  static constexpr std::size_t kMaxEntries = 28;
   std::array<CertificateEntry, kMaxEntries> entries{};
   std::size_t count = 0;
   double max_violation = kNaN;        ///< Of the NLP's rows, scaled.

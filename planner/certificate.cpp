@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "planner/flight_phase.hpp"
 #include "planner/forward_dynamics.hpp"
 #include "planner/shared_limits.hpp"
 
@@ -19,6 +20,11 @@ constexpr double kFlightEnds = 0.2;  // share of the flight near the ground at e
 /// The smooth terrain lies above what was seen, most of all beside edges: a point of the leg may be
 /// so far below it without touching the ground [m].
 constexpr double kTerrainAllowance = 12e-3;
+/// Shanks that pass an edge in flight stray so far from the plan [m].
+constexpr double kShankAllowance = 8e-3;
+/// Of the friction. Between the knots the reserve for feedback may shrink to this, or nothing is
+/// left to hold the landing with.
+constexpr double kFrictionShare = 0.95;
 
 // Checks by number; those of motors and joints run hip, knee, ankle.
 constexpr std::size_t kHipTorque = 0;
@@ -33,7 +39,8 @@ constexpr std::size_t kHeelPressure = 18;
 constexpr std::size_t kToeClearance = 19;
 constexpr std::size_t kHeelClearance = 20;
 constexpr std::size_t kKneeClearance = 21;
-constexpr std::size_t kChecks = 22;
+constexpr std::size_t kShankClearance = 22;
+constexpr std::size_t kChecks = 23;
 constexpr std::array<std::string_view, kChecks> kNames{"hip torque",
                                                        "knee torque",
                                                        "ankle torque",
@@ -55,8 +62,12 @@ constexpr std::array<std::string_view, kChecks> kNames{"hip torque",
                                                        "heel pressure",
                                                        "toe clearance",
                                                        "heel clearance",
-                                                       "knee clearance"};
+                                                       "knee clearance",
+                                                       "shank clearance"};
 static_assert(kChecks <= core::Certificate::kMaxEntries);
+/// Of the points that ClearanceLaw looks at.
+constexpr std::array<std::size_t, ClearanceLaw::kRowCount> kClearanceChecks{
+    kToeClearance, kHeelClearance, kShankClearance, kShankClearance, kKneeClearance};
 
 /// Collects the smallest margin of each check and the peaks.
 class Examiner {
@@ -77,6 +88,7 @@ class Examiner {
       examine_clearance(now, time);
     } else {
       examine_ground(now, time);
+      if (now.phase == core::JumpPhase::landing) examine_landed_shank(now, time);
     }
   }
 
@@ -148,22 +160,32 @@ class Examiner {
     note(kNormalForce, fz / (chain.total_mass() * model::kGravity), time);
     peaks_.normal_force = std::max(peaks_.normal_force, fz);
     if (fz <= 0.0) return;
-    note(kFriction, 1.0 - std::abs(now.force.x) / (model_.config.friction * fz), time);
+    note(kFriction, 1.0 - std::abs(now.force.x) / (kFrictionShare * model_.config.friction * fz),
+         time);
     const double pressure = -(now.moment + chain.sole_height * now.force.x) / fz;
     note(kToePressure, (chain.toe - pressure) / chain.toe, time);
     note(kHeelPressure, (chain.heel + pressure) / chain.heel, time);
   }
 
   void examine_clearance(const PlanarInstant& now, double time) {
-    const model::PlanarDynamics& dynamics = model_.dynamics;
-    const double knee = above(now, dynamics.knee(now.links.pitch)) - model_.robot.shank_radius;
     const double share =
         (time - motion_.liftoff_time) / (motion_.touchdown_time - motion_.liftoff_time);
     const bool in_the_middle = share >= kFlightEnds && share <= 1.0 - kFlightEnds;
     const double allowance = in_the_middle ? 0.0 : kTerrainAllowance;
-    note_clearance(kToeClearance, above(now, dynamics.toe(now.links.pitch)), allowance, time);
-    note_clearance(kHeelClearance, above(now, dynamics.heel(now.links.pitch)), allowance, time);
-    note_clearance(kKneeClearance, knee, allowance, time);
+    const auto points = ClearanceLaw::points(model_.dynamics, now.links.pitch);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const double radius =
+          p < ClearanceLaw::kFootRows ? 0.0 : model_.robot.shank_radius + kShankAllowance;
+      note_clearance(kClearanceChecks[p],
+                     above(now, points[p], ClearanceLaw::look_back(p)) - radius, allowance, time);
+    }
+  }
+
+  /// The landing leans the shanks back over what was jumped down from.
+  void examine_landed_shank(const PlanarInstant& now, double time) {
+    const double room = shank_room(model_, task_.terrain, now.ankle, now.links.pitch[model::kShank],
+                                   model_.robot.shank_radius);
+    note(kShankClearance, room / model_.config.clearance, time);
   }
 
   /// Where the soles leave and meet the ground only what is below it counts.
@@ -173,8 +195,9 @@ class Examiner {
   }
 
   [[nodiscard]] double above(const PlanarInstant& now,
-                             const model::PlanarVector<double>& from_ankle) const {
-    const double x = now.ankle.x + from_ankle.x;
+                             const model::PlanarVector<double>& from_ankle,
+                             double look_back) const {
+    const double x = now.ankle.x + from_ankle.x - look_back;
     return now.ankle.z + from_ankle.z - task_.terrain.at(x).height;
   }
 

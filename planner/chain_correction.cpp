@@ -16,21 +16,25 @@ using model::LinkArray;
 /// Kept from a physical limit, in row units: what lies between the places that are looked at, and a
 /// light foot, whose friction is a small number of newtons.
 constexpr double kMargin = 5e-3;
-constexpr double kTerrainScale = 0.1;   // of clearances among defects [m]
-constexpr double kSoleMargin = 1e-3;    // kept from the terrain [m]
-constexpr double kKneeMargin = 2.5e-3;  // the same; knees swing past edges between two looks [m]
+constexpr double kTerrainScale = 0.1;       // of clearances among defects [m]
+constexpr double kSoleMargin = 1e-3;        // kept from the terrain [m]
+constexpr double kShankMargin = 2.5e-3;     // the same; it swings past edges between two looks [m]
 constexpr double kContactAllowance = 2e-3;  // sole and terrain touch [m]
-constexpr int kKneeRow = 2;                 // among clearance rows, after toe and heel
 /// Longest step of the integration; its error is far below what is looked for [s].
 constexpr double kStepMax = 4e-3;
 constexpr double kRateScale = 21.0;  // of the errors of rates [rad/s]
+
+/// Of the clearance rows.
+constexpr bool is_foot(std::size_t row) {
+  return row < ClearanceLaw::kFootRows;
+}
 
 /// By how much each row of a step exceeds its physical limits at most, on either side; less than
 /// zero where there is room.
 struct Excess {
   std::array<double, ChainLayout::kStanceRows> below;
   std::array<double, ChainLayout::kStanceRows> above;
-  std::array<double, ChainLayout::kClearanceRows> terrain;  ///< [m]
+  std::array<double, ClearanceLaw::kRowCount> terrain;  ///< [m]
 
   Excess() {
     below.fill(-kUnbounded);
@@ -81,14 +85,14 @@ class StepLimits {
     const model::PlanarVector<double> ankle{
         motion_.liftoff_com.x + v.x * t - com.x,
         motion_.liftoff_com.z + v.z * t - 0.5 * model::kGravity * t * t - com.z};
-    const auto depth = [&](const model::PlanarVector<double>& point) {
-      return task_.terrain.at(ankle.x + point.x).height - ankle.z - point.z;
-    };
-    const model::PlanarDynamics& dynamics = model_.dynamics;
-    excess.terrain[0] = std::max(excess.terrain[0], depth(dynamics.toe(a)) - kContactAllowance);
-    excess.terrain[1] = std::max(excess.terrain[1], depth(dynamics.heel(a)) - kContactAllowance);
-    excess.terrain[kKneeRow] =
-        std::max(excess.terrain[kKneeRow], depth(dynamics.knee(a)) + model_.robot.shank_radius);
+    const auto points = ClearanceLaw::points(model_.dynamics, a);
+    for (std::size_t r = 0; r < points.size(); ++r) {
+      const double depth =
+          task_.terrain.at(ankle.x + points[r].x - ClearanceLaw::look_back(r)).height - ankle.z -
+          points[r].z;
+      const double radius = is_foot(r) ? -kContactAllowance : model_.robot.shank_radius;
+      excess.terrain[r] = std::max(excess.terrain[r], depth + radius);
+    }
   }
 
   const PlanarModel& model_;
@@ -181,15 +185,14 @@ double bound_rows(const Excess& excess, int first, int rows, const Eigen::Vector
 double bound_clearance(const Excess& excess, const ChainLayout& layout, int k,
                        const Eigen::VectorXd& values, ChainCorrection& correction) {
   double worst = 0.0;
-  for (int r = 0; r < ChainLayout::kClearanceRows; ++r) {
-    const double missing = excess.terrain[static_cast<std::size_t>(r)];
+  for (std::size_t r = 0; r < excess.terrain.size(); ++r) {
+    const double missing = excess.terrain[r];
     worst = std::max(worst, missing / kTerrainScale);
     for (const int step : {k - 1, k}) {
       if (step < 0 || step + 1 >= layout.steps().flight) continue;
-      const int row = layout.clearance(step) + r;
-      correction.lower(row) =
-          std::max(correction.lower(row),
-                   values(row) + missing + (r == kKneeRow ? kKneeMargin : kSoleMargin));
+      const int row = layout.clearance(step) + static_cast<int>(r);
+      correction.lower(row) = std::max(
+          correction.lower(row), values(row) + missing + (is_foot(r) ? kSoleMargin : kShankMargin));
     }
   }
   return worst;

@@ -46,7 +46,7 @@ void add_flight_knot(const ChainProblem& problem, const KktInput& input, int k, 
       q.m[kTo[i]][kTo[j]] += input.curvature * clearance.hessian[i][j];
     }
   }
-  for (std::size_t r = 0; r < 3; ++r) {
+  for (std::size_t r = 0; r < ClearanceLaw::kRowCount; ++r) {
     const int slot = layout.clearance(k) + static_cast<int>(r);
     for (std::size_t i = 0; i < 9; ++i) {
       q.p[kTo[i]] += (*input.slot_slopes)(slot)*clearance.slope[r][i];

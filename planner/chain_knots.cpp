@@ -21,6 +21,7 @@ LinkArray<double> flight_links(const double* y) {
 struct PointPath {
   LinkArray<double> x{};
   LinkArray<double> z{};
+  double look_back = 0.0;  ///< The terrain is taken so far behind the point [m].
 };
 
 PointPath path_from_com(const model::PlanarDynamics& dynamics, const LinkArray<double>& a) {
@@ -56,7 +57,7 @@ struct Centre {
 /// Height of one point above the terrain; `slope` is its row of the terms.
 void expand_point(const Centre& centre, const PointPath& path, double multiplier,
                   std::array<double, 9>& slope, ClearanceTerms& terms) {
-  double x = centre.x;
+  double x = centre.x - path.look_back;
   for (const double each : path.x) x += each;
   const TerrainPoint ground = centre.terrain.at(x);
   LinkArray<double> by_pitch{};
@@ -137,18 +138,19 @@ void expand_momentum(const model::PlanarDynamics& dynamics, const std::array<dou
 }
 
 void expand_clearance(const ClearanceLaw& law, const std::array<double, 9>& x,
-                      const std::array<double, 3>& multipliers, ClearanceTerms& terms) {
+                      const std::array<double, ClearanceLaw::kRowCount>& multipliers,
+                      ClearanceTerms& terms) {
   terms.hessian = {};
   const LinkArray<double> a = flight_links(x.data());
   const Centre centre(law, x.data() + kDof);
   const PointPath com = path_from_com(law.dynamics, a);
-  const std::array<model::PlanarVector<double>, 3> points{law.dynamics.toe(a), law.dynamics.heel(a),
-                                                          law.dynamics.knee(a)};
-  constexpr std::array<std::size_t, 3> kLinkOf{model::kFoot, model::kFoot, model::kShank};
-  for (std::size_t p = 0; p < 3; ++p) {
+  const auto points = ClearanceLaw::points(law.dynamics, a);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const std::size_t link = p < ClearanceLaw::kFootRows ? model::kFoot : model::kShank;
     PointPath path = com;
-    path.x[kLinkOf[p]] += points[p].x;
-    path.z[kLinkOf[p]] += points[p].z;
+    path.x[link] += points[p].x;
+    path.z[link] += points[p].z;
+    path.look_back = ClearanceLaw::look_back(p);
     expand_point(centre, path, multipliers[p], terms.slope[p], terms);
   }
 }

@@ -16,10 +16,11 @@ void expand_momentum(const model::PlanarDynamics& dynamics, const std::array<dou
 
 /// ClearanceLaw with derivatives in closed form, by its own variables.
 struct ClearanceTerms {
-  std::array<std::array<double, 9>, 3> slope{};
+  std::array<std::array<double, 9>, ClearanceLaw::kRowCount> slope{};
   std::array<std::array<double, 9>, 9> hessian{};  ///< Of multipliers . rows.
 };
 void expand_clearance(const ClearanceLaw& law, const std::array<double, 9>& x,
-                      const std::array<double, 3>& multipliers, ClearanceTerms& terms);
+                      const std::array<double, ClearanceLaw::kRowCount>& multipliers,
+                      ClearanceTerms& terms);
 
 }  // namespace hopscotch::planner

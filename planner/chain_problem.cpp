@@ -234,7 +234,7 @@ double ChainProblem::values(const Eigen::VectorXd& x, Eigen::VectorXd& slots,
             links_from_coordinates(knot[4], knot[5], knot[6], knot[7])) -
         x(layout_.decision().momentum());
     if (k + 1 == steps.flight) continue;
-    std::array<double, 3> rows;
+    std::array<double, ClearanceLaw::kRowCount> rows;
     (void)clearance_laws_[static_cast<std::size_t>(k)](gathered(x, clearance_place(k)), rows);
     std::copy(rows.begin(), rows.end(), slots.data() + layout_.clearance(k));
   }
@@ -297,7 +297,8 @@ void ChainProblem::expand(const Eigen::VectorXd& x, const Eigen::VectorXd& slot,
                     equality(layout_.momentum(k)), terms.momentum[at]);
     if (k + 1 == steps.flight) continue;
     expand_clearance(clearance_laws_[at], gathered(x, clearance_place(k)),
-                     segment<3>(slot, layout_.clearance(k)), terms.clearance[at]);
+                     segment<ClearanceLaw::kRowCount>(slot, layout_.clearance(k)),
+                     terms.clearance[at]);
   }
   for (int k = 0; k < steps.landing; ++k) {
     expand_step(
@@ -403,7 +404,7 @@ void ChainProblem::slots_along(const ChainTerms& terms, const Eigen::VectorXd& d
     joint_values(flight_joints_, knot_after(place, direction), out + layout_.flight_joints(k));
     if (k + 1 == steps.flight) continue;
     const std::array<int, 9> at = clearance_place(k);
-    for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t r = 0; r < ClearanceLaw::kRowCount; ++r) {
       out[layout_.clearance(k) + static_cast<int>(r)] =
           along_row(terms.clearance[static_cast<std::size_t>(k)].slope[r], at, direction);
     }

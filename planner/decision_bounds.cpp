@@ -1,7 +1,9 @@
 #include "planner/decision_bounds.hpp"
 
+#include <algorithm>
+
+#include "planner/landing_phase.hpp"
 #include "planner/shared_limits.hpp"
-#include "planner/takeoff_phase.hpp"
 
 namespace hopscotch::planner {
 
@@ -11,6 +13,8 @@ namespace {
 constexpr double kRateMax = 40.0;      // [rad/s]
 constexpr double kTypicalRate = 5.0;   // [rad/s]
 constexpr double kTypicalStep = 0.02;  // [s]
+/// Further back than at the start a shank may lean in any case [rad]: 1 cm at the knee.
+constexpr double kStartRoom = 0.05;
 
 struct Writer {
   DecisionBounds bounds;
@@ -68,9 +72,10 @@ void bound_flight(const PlanarModel& model, const ShankRange& landing_shank,
 DecisionBounds decision_bounds(const PlanarModel& model, const PlanarTask& task,
                                const DecisionLayout& layout) {
   const double sole_height = model.dynamics.chain().sole_height;
-  const ShankRange start = shank_range(model, task.terrain, {model.ankle_x(), sole_height});
-  const ShankRange target = shank_range(
-      model, task.terrain, {task.distance + model.ankle_x(), task.height + sole_height});
+  ShankRange start = shank_range(model, task.terrain, {model.ankle_x(), sole_height});
+  // Where the robot stands its shanks touch nothing, whatever the map says.
+  start.lower = std::min(start.lower, task.start.pitch[model::kShank] - kStartRoom);
+  const ShankRange target = landed_shank_range(model, task);
   Writer writer;
   writer.bounds.lower = Eigen::VectorXd::Zero(layout.size());
   writer.bounds.upper = Eigen::VectorXd::Zero(layout.size());

@@ -96,15 +96,32 @@ struct MomentumLaw {
   static bool curved(int i, int j) { return i != 8 && j != 8 && !(i >= 4 && j >= 4); }
 };
 
-/// Eq. (11b): toe, heel and knee stay above the terrain. Variables: y of a flight knot, then the
+/// Eq. (11b): toe, heel and shank stay above the terrain. Variables: y of a flight knot, then the
 /// five of `Ballistic`.
 struct ClearanceLaw {
-  static constexpr int kRows = 3;
+  /// Points of the shank, as shares of it from the ankle; the last one is the knee.
+  static constexpr std::array<double, 3> kShankShares{1.0 / 3.0, 2.0 / 3.0, 1.0};
+  /// Rows of the foot: toe and heel. Those of the shank follow.
+  static constexpr std::size_t kFootRows = 2;
+  static constexpr std::size_t kRowCount = kFootRows + kShankShares.size();
+  static constexpr int kRows = static_cast<int>(kRowCount);
   model::PlanarDynamics dynamics;
   SmoothTerrain terrain;
   double knot = 0.0;            ///< Number of this knot, 0 at lift-off.
   double foot_clearance = 0.0;  ///< [m]
-  double knee_clearance = 0.0;  ///< [m]
+  double knee_clearance = 0.0;  ///< Of the shank's axis [m].
+
+  /// The points that the rows are about, from the ankle axis [m].
+  template <typename T>
+  static std::array<model::PlanarVector<T>, kRowCount> points(const model::PlanarDynamics& dynamics,
+                                                              const model::LinkArray<T>& a) {
+    std::array<model::PlanarVector<T>, kRowCount> out{dynamics.toe(a), dynamics.heel(a)};
+    const model::PlanarVector<T> knee = dynamics.knee(a);
+    for (std::size_t i = 0; i < kShankShares.size(); ++i) {
+      out[kFootRows + i] = {kShankShares[i] * knee.x, kShankShares[i] * knee.z};
+    }
+    return out;
+  }
 
   template <typename T>
   T operator()(const std::array<T, 9>& x, std::array<T, kRows>& rows) const {
@@ -113,22 +130,21 @@ struct ClearanceLaw {
     const model::PlanarVector<T> centre = flight.com(knot);
     const model::PlanarVector<T> from_ankle = dynamics.com(a);
     const model::PlanarVector<T> ankle{centre.x - from_ankle.x, centre.z - from_ankle.z};
-    rows[0] = above(ankle, dynamics.toe(a));
-    rows[1] = above(ankle, dynamics.heel(a));
-    rows[2] = above(ankle, dynamics.knee(a));
+    const std::array<model::PlanarVector<T>, kRowCount> point = points(dynamics, a);
+    for (std::size_t r = 0; r < kRowCount; ++r) {
+      rows[r] = ankle.z + point[r].z - terrain.height(ankle.x + point[r].x - look_back(r));
+    }
     return T(0.0);
   }
-  void bounds(std::span<double> lower, std::span<double> upper) const {
-    lower[0] = lower[1] = foot_clearance;
-    lower[2] = knee_clearance;
-    std::fill_n(upper.begin(), kRows, kUnbounded);
+  /// How far behind the point of a row its terrain is taken [m]: shanks follow over an edge that
+  /// toes and heels have left behind.
+  static constexpr double look_back(std::size_t row) {
+    return row < kFootRows ? 0.0 : SmoothTerrain::kEdgeDoubt;
   }
-
- private:
-  template <typename T>
-  [[nodiscard]] T above(const model::PlanarVector<T>& ankle,
-                        const model::PlanarVector<T>& point) const {
-    return ankle.z + point.z - terrain.height(ankle.x + point.x);
+  void bounds(std::span<double> lower, std::span<double> upper) const {
+    std::fill_n(lower.begin(), kFootRows, foot_clearance);
+    std::fill_n(lower.begin() + kFootRows, kShankShares.size(), knee_clearance);
+    std::fill_n(upper.begin(), kRows, kUnbounded);
   }
 };
 

@@ -48,18 +48,18 @@ struct FloatingLaw {
   }
 };
 
-/// Toe, heel and knee above the terrain: shank, knee, trunk, foot, ankle x and z.
+/// Toe, heel and shank above the terrain: shank, knee, trunk, foot, ankle x and z.
 struct FloatingClearance {
-  static constexpr int kRows = 3;
+  static constexpr int kRows = ClearanceLaw::kRows;
   ClearanceLaw law;
 
   template <typename T>
   T operator()(const std::array<T, kFloatingDof>& x, std::array<T, kRows>& rows) const {
     const model::LinkArray<T> a = links_from_coordinates(x[0], x[1], x[2], x[3]);
-    const model::PlanarDynamics& dynamics = law.dynamics;
-    std::size_t row = 0;
-    for (const model::PlanarVector<T>& r : {dynamics.toe(a), dynamics.heel(a), dynamics.knee(a)}) {
-      rows[row++] = x[5] + r.z - law.terrain.height(x[4] + r.x);
+    const auto points = ClearanceLaw::points(law.dynamics, a);
+    for (std::size_t r = 0; r < points.size(); ++r) {
+      const T along = x[4] + points[r].x - ClearanceLaw::look_back(r);
+      rows[r] = x[5] + points[r].z - law.terrain.height(along);
     }
     return T(0.0);
   }

@@ -44,6 +44,9 @@ constexpr std::size_t kNeighbours = 2;
 /// (docs/decisions/0076). The library's jumps as they are cost next to nothing.
 constexpr int kIterationsInAll = 170;
 
+/// In the words of the certificate.
+constexpr const char* kShankLimit = "shank clearance";
+
 /// First landing step as a share of the mean one where the shipped rhythm, short steps first, gives
 /// no certified plan: the last steps are then shorter, and less happens between their knots.
 constexpr double kEvenFirstShare = 0.8;
@@ -84,6 +87,19 @@ Refusal infeasible(const SolveOutcome& outcome, const PlanarTask& task, std::str
                 outcome.iterations, outcome.violation);
   const std::string by = limit.empty() ? "" : "; stopped by " + std::string(limit);
   return {Reason::plan_infeasible, text + by};
+}
+
+/// The final stand is not a variable: where it is not clear of the ground no motion helps.
+std::optional<Refusal> blocked_stand(const PlanarModel& model, const PlanarTask& task) {
+  const double leant = task.final_posture[model::kShank];
+  const double lower = landed_shank_range(model, task).lower;
+  if (leant >= lower) return std::nullopt;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "standing at %.3f m, height %.3f m, the shanks lean back by %.2f rad, but the "
+                "ground behind leaves room for %.2f rad; stopped by %s",
+                task.distance, task.height, -leant, -lower, kShankLimit);
+  return Refusal{Reason::plan_infeasible, text};
 }
 
 double violation_max(Solver solver) {
@@ -266,7 +282,8 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::climb_down(const Trial& trial)
     const KnownJump from = *last;
     first = finish_near(trial, from);
     if (first) return first;
-    // A jump of the library may be nearer; from the guess takes longest.
+  }
+  if (trial.request.guess != StartGuess::kinematic) {
     if (core::Result<core::JumpPlan> plan = by_neighbours(trial, 1)) return plan;
     rung = PlanRung::solved;
   }
@@ -398,6 +415,10 @@ core::Result<core::JumpPlan> JumpPlanner::plan(const PlanRequest& request) {
   const core::Result<PlanarTask> task = planar_task(model, request);
   if (!task) return task.error();
   if (request.formulation != Formulation::variable) return memory_->plan_otherwise(request, *task);
+  if (std::optional<Refusal> refusal = blocked_stand(model, *task)) {
+    memory_->obstacle = kShankLimit;
+    return *refusal;
+  }
 
   const Trial trial{model, *task, request};
   return request.solver == Solver::ipopt ? memory_->plan_by_ipopt(trial)

@@ -20,14 +20,16 @@ struct KnownJump;
 
 /// Where the solver starts from.
 enum class StartGuess : std::uint8_t {
-  kinematic,  ///< Closed form, from the request alone: the same request gives the same plan.
-  previous,   ///< The planner's last solved jump where there is one, else kinematic.
+  kinematic,  ///< Closed form, from the request alone.
+  library,    ///< The most similar jump of the library where there is one, else kinematic.
+  previous,   ///< The planner's last solved jump where there is one, else library.
 };
 
-/// How a plan was come by: each rung is tried when the one before gives no certified plan. Below
-/// the last one there is no plan, and the robot stands.
+/// How a plan was come by: each rung is tried when the one before gives no certified plan, but a
+/// neighbour that was asked for as start guess comes first. Below the last one there is no plan,
+/// and the robot stands.
 enum class PlanRung : std::uint8_t {
-  solved,        ///< From the start guess that was asked for.
+  solved,        ///< From the closed-form guess, or from the last jump.
   even_landing,  ///< With landing steps of nearly equal length, from the closed-form guess.
   neighbour,     ///< Solved from a jump of the library close by.
   library,  ///< A jump of the library as it is, to its own distance; certified for this ground.
@@ -45,7 +47,8 @@ struct PlanRequest {
   core::LandingTarget target;  ///< Where to, and the terrain in between.
   model::StandPosture final_posture;  ///< At rest, at the target.
   std::uint64_t id = 0;
-  StartGuess guess = StartGuess::kinematic;
+  /// The first two give the same plan for the same request, whatever was planned before.
+  StartGuess guess = StartGuess::library;
   Solver solver = Solver::chain;
   /// Others than the first are for comparison: straight jumps only, always cold and by Ipopt; their
   /// certificate says what exact dynamics make of the plan, and refuses nothing.

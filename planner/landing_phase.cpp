@@ -2,6 +2,12 @@
 
 namespace hopscotch::planner {
 
+ShankRange landed_shank_range(const PlanarModel& model, const PlanarTask& task) {
+  const double sole_height = model.dynamics.chain().sole_height;
+  return shank_range(model, task.terrain,
+                     {task.distance + model.ankle_x(), task.height + sole_height});
+}
+
 StanceLaw landing_law(const PlanarModel& model, const PlanarTask& task, int k) {
   const PlannerConfig& config = model.config;
   return {model.dynamics,

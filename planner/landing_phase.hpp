@@ -56,6 +56,9 @@ struct TouchdownLaw {
   }
 };
 
+/// `shank_range` where the jump ends.
+[[nodiscard]] ShankRange landed_shank_range(const PlanarModel& model, const PlanarTask& task);
+
 /// The laws of the landing and where touchdown finds its variables.
 [[nodiscard]] StanceLaw landing_law(const PlanarModel& model, const PlanarTask& task, int k);
 [[nodiscard]] TouchdownLaw touchdown_law(const PlanarModel& model, const PlanarTask& task);

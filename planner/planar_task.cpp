@@ -26,6 +26,8 @@ constexpr double kTiltMax = 0.7;          // [rad]
 constexpr double kHeightTolerance = 0.04;  // [m]
 constexpr double kSoleInset = 0.01;        // from toe and heel, where maps blur edges [m]
 constexpr double kSoleMiddle = 0.03;       // either side of the sole's centre [m]
+constexpr double kEdgeNear = 0.02;         // before the heel at the target [m]
+constexpr double kCutMax = 0.015;          // of ground beside a sole, for the sole's sake [m]
 
 template <typename... Numbers>
 std::string sentence(const char* format, Numbers... numbers) {
@@ -106,6 +108,30 @@ std::optional<Refusal> check_support(const PlanarModel& model, const core::Landi
   return std::nullopt;
 }
 
+/// Ground that rises close to a sole is cut away where the smooth terrain has to be level, and no
+/// knot of the plan would see it: a foot that leaves or comes down there would hit it.
+std::optional<Refusal> check_way(const core::LandingTarget& target, const SmoothTerrain& terrain,
+                                 double target_rear) {
+  const double level = std::min(0.0, target.height) + kHeightTolerance;
+  for (int i = 0; i < core::TerrainProfile::kSamples; ++i) {
+    const double x = core::TerrainProfile::x(i);
+    if (x <= 0.0 || x >= target_rear) continue;
+    // Only what surely rises: what was not seen yet lies right before the toes.
+    double surely = target.profile.lower[static_cast<std::size_t>(i)];
+    // An edge may lie right before its next sample. Soles that come down keep 3.5 cm from edges.
+    if (i > 0 && x > target_rear - kEdgeNear) {
+      surely = std::max(surely, target.profile.lower[static_cast<std::size_t>(i - 1)]);
+    }
+    if (!(surely > level && surely - terrain.at(x).height > kCutMax)) continue;
+    return Refusal{
+        Reason::target_malformed,
+        sentence("the ground at x = %.3f m has height %.3f m, too near to a sole for its "
+                 "foot to pass",
+                 x, surely)};
+  }
+  return std::nullopt;
+}
+
 std::optional<Refusal> check_start(const PlanarModel& model, const PlanRequest& request) {
   const core::RobotState& start = request.start;
   if (!is_finite(start)) {
@@ -143,15 +169,14 @@ core::Result<PlanarTask> planar_task(const PlanarModel& model, const PlanRequest
       target.profile, SolePlace{-half, half, 0.0},
       SolePlace{target.distance - half, target.distance + half, target.height});
   if (!terrain) return terrain.error();
-  const PlannerConfig& config = model.config;
-  const double clearance =
-      std::max(config.clearance_min,
-               config.clearance - config.clearance_per_height * std::abs(target.height));
+  if (std::optional<Refusal> refusal = check_way(target, *terrain, target.distance - half)) {
+    return *refusal;
+  }
   return PlanarTask{projected(request.start, target.heading),
                     end->pitch,
                     target.distance,
                     target.height,
-                    clearance,
+                    model.config.clearance,
                     *terrain};
 }
 

@@ -62,9 +62,7 @@ void load_limits(const ConfigReader& section, PlannerConfig& config) {
 }
 
 void load_clearance(const ConfigReader& section, PlannerConfig& config) {
-  config.clearance = section.number("level_m", Range::closed(0.0, 0.2));
-  config.clearance_per_height = section.number("lost_per_height", Range::closed(0.0, 1.0));
-  config.clearance_min = section.number("min_m", Range::closed(0.0, 0.2));
+  config.clearance = section.number("foot_m", Range::closed(0.0, 0.2));
   config.knee_clearance = section.number("knee_m", Range::closed(0.0, 0.2));
   section.finish();
 }

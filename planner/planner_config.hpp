@@ -45,9 +45,7 @@ struct PlannerConfig {
   double trunk_pitch_min = 0.0;       ///< [rad]
   double trunk_pitch_max = 0.0;       ///< [rad]
   double foot_pitch_max = 0.0;        ///< Of |pitch| in flight [rad].
-  double clearance = 0.0;             ///< Of toe and heel in mid-flight over level ground [m].
-  double clearance_per_height = 0.0;  ///< Lost per metre of |height| of the target [m/m].
-  double clearance_min = 0.0;         ///< [m]
+  double clearance = 0.0;             ///< Of toe and heel in mid-flight [m].
   double knee_clearance = 0.0;        ///< Of the knee axis from the terrain [m].
   double touchdown_speed_down = 0.0;  ///< Largest of the sole [m/s].
   /// Smallest of the sole [m/s]: a foot that is not moving down misses ground that is a little low.

@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, ChainLayout::kStanceRows> kStanceNames{
 constexpr std::array<std::string_view, kFlightDof> kJointNames{"hip range", "hip speed",
                                                                "ankle speed", "ankle range"};
 constexpr std::array<std::string_view, ChainLayout::kClearanceRows> kClearanceNames{
-    "toe clearance", "heel clearance", "knee clearance"};
+    "toe clearance", "heel clearance", "shank clearance", "shank clearance", "knee clearance"};
 constexpr std::array<std::string_view, 2> kTouchdownNames{"touchdown speed along",
                                                           "touchdown speed down"};
 constexpr std::array<std::string_view, kFlightDof> kPitchNames{"shank pitch", "knee range",

@@ -27,6 +27,10 @@ struct SolePlace {
 /// of a step lie on its low side. Where a sole stands or is to stand nothing rises above it.
 class SmoothTerrain {
  public:
+  /// Between two samples an edge can be anywhere, so that the spline may begin to fall before the
+  /// ground does. What passes close by an edge behind it looks so much further back [m].
+  static constexpr double kEdgeDoubt = 0.020;
+
   /// @return target_malformed if `upper` is not finite anywhere between the places.
   static core::Result<SmoothTerrain> from_profile(const core::TerrainProfile& profile,
                                                   const SolePlace& start, const SolePlace& target);

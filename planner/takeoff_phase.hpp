@@ -45,8 +45,14 @@ struct StanceLaw {
   }
 };
 
-/// Range of shank pitches for which the knee, on a foot that stands with its ankle axis at `ankle`,
-/// keeps its clearance from the terrain; at most the configured one.
+/// How far a shank of radius `radius` [m], on a foot that stands with its ankle axis at `ankle`, is
+/// above the terrain where it comes nearest to it; less than zero inside of it [m].
+[[nodiscard]] double shank_room(const PlanarModel& model, const SmoothTerrain& terrain,
+                                const model::PlanarVector<double>& ankle, double pitch,
+                                double radius);
+
+/// Range of shank pitches for which shank and knee, on a foot that stands with its ankle axis at
+/// `ankle`, keep their clearance from the terrain; at most the configured one.
 struct ShankRange {
   double lower = 0.0;  ///< [rad]
   double upper = 0.0;  ///< [rad]

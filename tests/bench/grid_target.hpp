@@ -30,14 +30,17 @@ struct GridProblems {
         model(robot, PlannerConfig::load(root.section("planner"))),
         layout(model.config.steps) {}
 
-  [[nodiscard]] core::Result<PlanarTask> task_of(const GridTarget& target) const {
-    const auto start = start_state(target.start, robot, posture);
-    if (!start) return core::Refusal{core::Reason::out_of_reach, "start"};
+  [[nodiscard]] PlanRequest request_of(const GridTarget& target) const {
     const StepRequest step{.distance = target.distance,
                            .height = target.height,
                            .edge = default_edge(target.distance, target.height)};
-    return planar_task(
-        model, {.start = *start, .target = step_target(step, robot), .final_posture = posture});
+    return {.start = start_state(target.start, robot, posture).value(),
+            .target = step_target(step, robot),
+            .final_posture = posture};
+  }
+
+  [[nodiscard]] core::Result<PlanarTask> task_of(const GridTarget& target) const {
+    return planar_task(model, request_of(target));
   }
 
   [[nodiscard]] SolveOptions options() const {

@@ -203,8 +203,12 @@ class EveryPhase : public JumpSupervisorTest {
   JumpSupervisor at(RobotPhase phase) {
     JumpSupervisor machine(kConfig, robot_);
     core::RobotState state = state_;
-    if (phase == RobotPhase::hold) EXPECT_TRUE(machine.hold());
-    if (phase == RobotPhase::damp) EXPECT_TRUE(machine.damp());
+    if (phase == RobotPhase::hold) {
+      EXPECT_TRUE(machine.hold());
+    }
+    if (phase == RobotPhase::damp) {
+      EXPECT_TRUE(machine.damp());
+    }
     if (phase == RobotPhase::fault) machine.latch(Reason::stale_sensors);
     const std::vector<std::pair<RobotPhase, double>> way{{RobotPhase::crouch, 0.01},
                                                          {RobotPhase::takeoff, 0.15},

@@ -65,6 +65,20 @@ TEST(Certificate, FindsAWallInTheWay) {
   EXPECT_GT(certified.certificate.dense_max_violation, 0.5);
 }
 
+TEST(Certificate, FindsGroundBehindTheTargetThatTheShanksLeanOn) {
+  SolvedJump jump = level_jump();
+  const CertifiedMotion open = certify(jump.model, jump.task, jump.motion);
+  EXPECT_GT(margin(open.certificate, "shank clearance"), 0.0);
+  PlanRequest below = testing_support::request(0.40, 0.0);
+  for (double x = 0.15; x < 0.27; x += 0.01) {  // behind the ankle, which lands at 0.39 m
+    below.target.profile.upper[static_cast<std::size_t>(core::TerrainProfile::sample(x))] = 0.15;
+  }
+  const core::Result<PlanarTask> task = planar_task(jump.model, below);
+  ASSERT_TRUE(task) << task.error().text();
+  const CertifiedMotion certified = certify(jump.model, *task, jump.motion);
+  EXPECT_LT(margin(certified.certificate, "shank clearance"), 0.0);
+}
+
 TEST(Certificate, FindsAMotionThatTheTorquesDoNotMake) {
   SolvedJump jump = level_jump();
   // A jump of the rates inside the push that no torque of the step explains.

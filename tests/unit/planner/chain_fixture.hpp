@@ -44,7 +44,7 @@ class RowPlaces {
       slots(layout.flight_rows(k), ChainLayout::kFlightRows);
       slots(layout.flight_joints(k), 4);
       equalities(layout.momentum(k), 1);
-      if (k + 1 < steps.flight) slots(layout.clearance(k), 3);
+      if (k + 1 < steps.flight) slots(layout.clearance(k), ClearanceLaw::kRows);
     }
     equalities(layout.touchdown(), 5);
     slots(layout.touchdown_speeds(), 2);

@@ -89,7 +89,7 @@ TEST_P(ChainSolverTest, SameInputGivesTheSameBits) {
 
 INSTANTIATE_TEST_SUITE_P(Jumps, ChainSolverTest,
                          testing::Values(std::pair{0.40, 0.0}, std::pair{0.40, 0.10},
-                                         std::pair{0.35, 0.20}, std::pair{0.40, -0.20}));
+                                         std::pair{0.30, 0.15}, std::pair{0.45, -0.10}));
 
 TEST(ChainSolver, StartsAgainFromANeighbour) {
   SolvedChain chain(0.40, 0.0, kOnLine);

@@ -63,6 +63,14 @@ TEST_F(FlightPhase, ClearanceIsMeasuredFromTheTerrainBelowEachPoint) {
   const model::PlanarVector<double> toe = model_.dynamics.toe(a);
   const double toe_x = centre.x - com.x + toe.x;
   EXPECT_NEAR(rows[0], centre.z - com.z + toe.z - task_.terrain.at(toe_x).height, 1e-12);
+  // The shank looks back for an edge that it follows over.
+  const model::PlanarVector<double> knee = model_.dynamics.knee(a);
+  for (std::size_t i = 0; i < ClearanceLaw::kShankShares.size(); ++i) {
+    const double share = ClearanceLaw::kShankShares[i];
+    const double x_back = centre.x - com.x + share * knee.x - SmoothTerrain::kEdgeDoubt;
+    EXPECT_NEAR(rows[ClearanceLaw::kFootRows + i],
+                centre.z - com.z + share * knee.z - task_.terrain.at(x_back).height, 1e-12);
+  }
 }
 
 TEST(ClearanceProfile, AsksForNothingAtTheEnds) {

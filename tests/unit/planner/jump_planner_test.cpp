@@ -94,6 +94,15 @@ TEST(JumpPlanner, RefusesAnImpossibleJumpWithNumbers) {
   EXPECT_NE(plan.error().sentence.find("0.600"), std::string::npos);
 }
 
+TEST(JumpPlanner, RefusesALandingWhoseShanksWouldLeanOnTheEdge) {
+  JumpPlanner planner(shipped_config(), hector());
+  const auto plan = planner.plan(request(0.29, -0.20));  // 17 cm beyond the edge
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().reason, core::Reason::plan_infeasible);
+  EXPECT_EQ(planner.obstacle(), "shank clearance");
+  EXPECT_TRUE(planner.plan(request(0.35, -0.20)));
+}
+
 TEST(JumpPlanner, RefusesWhatTheCertificateRefutes) {
   PlannerConfig config = shipped_config();
   config.friction = 0.02;

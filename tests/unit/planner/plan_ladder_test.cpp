@@ -42,15 +42,27 @@ class PlanLadder : public testing::Test {
 
 TEST_F(PlanLadder, FirstRungIsTheSolve) {
   JumpPlanner planner = planner_with(shipped_config().iterations_max);
-  const core::Result<core::JumpPlan> plan = planner.plan(request(0.41, 0.0));
+  PlanRequest leap = request(0.41, 0.0);
+  leap.guess = StartGuess::kinematic;
+  const core::Result<core::JumpPlan> plan = planner.plan(leap);
   ASSERT_TRUE(plan);
   EXPECT_EQ(planner.rung(), PlanRung::solved);
   EXPECT_FALSE(plan->warm);
 }
 
+TEST_F(PlanLadder, ANeighbourFromTheLibraryIsTheStartWhereThereIsOne) {
+  JumpPlanner planner = planner_with(shipped_config().iterations_max);
+  const core::Result<core::JumpPlan> near = planner.plan(request(0.41, 0.0));
+  ASSERT_TRUE(near);
+  EXPECT_EQ(planner.rung(), PlanRung::neighbour);
+  EXPECT_TRUE(near->warm);
+  ASSERT_TRUE(planner.plan(request(0.30, 0.10)));
+  EXPECT_EQ(planner.rung(), PlanRung::solved);  // no jump of the library is like that
+}
+
 TEST_F(PlanLadder, WhatTheCertificateRefusesIsSolvedWithEvenLandingSteps) {
   JumpPlanner planner(shipped_config(), hector());
-  const core::Result<core::JumpPlan> plan = planner.plan(request(0.59, -0.20));
+  const core::Result<core::JumpPlan> plan = planner.plan(request(0.55, 0.10));
   ASSERT_TRUE(plan) << plan.error().text();
   EXPECT_EQ(planner.rung(), PlanRung::even_landing);
   EXPECT_LT(plan->certificate.dense_max_violation, 1e-3);

@@ -114,6 +114,24 @@ INSTANTIATE_TEST_SUITE_P(
                      }
                    },
                    core::Reason::target_malformed},
+        BadRequest{"step under the toes",
+                   [](PlanRequest& r) {
+                     r.target = step_target({.distance = 0.18, .height = 0.1, .edge = 0.06},
+                                            testing_support::hector());
+                   },
+                   core::Reason::target_malformed},
+        BadRequest{"step close ahead",
+                   [](PlanRequest& r) {
+                     r.target = step_target({.distance = 0.21, .height = 0.2, .edge = 0.09},
+                                            testing_support::hector());
+                   },
+                   core::Reason::target_malformed},
+        BadRequest{"drop under the heels",
+                   [](PlanRequest& r) {
+                     r.target = step_target({.distance = 0.21, .height = -0.15, .edge = 0.12},
+                                            testing_support::hector());
+                   },
+                   core::Reason::target_malformed},
         BadRequest{"inside a wall",
                    [](PlanRequest& r) {
                      const auto at = static_cast<std::size_t>(core::TerrainProfile::sample(0.35));

@@ -42,5 +42,27 @@ TEST_F(TakeoffPhase, TerrainBehindLimitsHowFarTheKneesMayGoBack) {
             drop.terrain.at(0.27 + knee.x).height + model_.config.knee_clearance);
 }
 
+TEST_F(TakeoffPhase, AnEdgeBetweenAnkleAndKneeLimitsTheShankToo) {
+  constexpr double kSole = 0.04;    // [m]
+  constexpr double kAnkle = 0.225;  // 11 cm beyond the edge of a drop of 15 cm [m]
+  const PlanarTask drop = testing_support::task(model_, 0.25, -0.15);
+  const double leant = task_.final_posture[model::kShank];
+  const model::PlanarVector<double> ankle{kAnkle, -0.15 + kSole};
+  const model::PlanarVector<double> knee =
+      model_.dynamics.knee(model::LinkArray<double>{0.0, leant, 0.0, 0.0});
+  EXPECT_GT(ankle.z + knee.z, model_.config.knee_clearance) << "the knee itself is well above";
+  EXPECT_LT(shank_room(model_, drop.terrain, ankle, leant, model_.robot.shank_radius), 0.0);
+  const ShankRange range = shank_range(model_, drop.terrain, ankle);
+  EXPECT_GT(range.lower, leant);
+  EXPECT_GT(shank_room(model_, drop.terrain, ankle, range.lower, model_.robot.shank_radius), 0.0);
+}
+
+TEST_F(TakeoffPhase, AShankOnOpenGroundHasTheRoomOfItsLowestPoint) {
+  constexpr double kRadius = 0.015;  // [m]
+  const double room = shank_room(model_, task_.terrain, {0.0, 0.04}, 0.0, kRadius);
+  const double lowest = 0.04 + 0.25 * model_.dynamics.chain().shank.length - kRadius;
+  EXPECT_NEAR(room, lowest, 1e-9);
+}
+
 }  // namespace
 }  // namespace hopscotch::planner
