@@ -22,8 +22,12 @@ double beyond(double deviation, double dead) {
   return std::copysign(std::max(0.0, std::abs(deviation) - dead), deviation);
 }
 
-/// How far the trunk of an undisturbed jump turns beside its plan [rad].
-constexpr double kScatter = 0.06;
+/// Whether a flight is disturbed: 0 within what trunks of undisturbed jumps turn beside their plan,
+/// 1 from twice that on.
+double disturbance(double turned) {
+  constexpr double kScatter = 0.06;  // [rad]
+  return std::clamp(std::abs(turned) / kScatter - 1.0, 0.0, 1.0);
+}
 
 double square(double x) {
   return x * x;
@@ -183,7 +187,7 @@ void keep_soles(const JointGains& gains, const core::RobotState& state,
   const Eigen::Vector3d rpy = model::rpy_from_rotation(state.R_WB);
   const double pitch = rpy.y() - planned.rpy.y();
   // Legs of an undisturbed jump keep their planned directions: further on they land too far.
-  const double further = (gains.flight_share - 1.0) * beyond(pitch, kScatter);
+  const double further = (gains.flight_share - 1.0) * disturbance(pitch) * pitch;
   for (const core::Leg leg : core::kAllLegs) {
     q[joint_index(leg, Joint::hip_pitch)] -= pitch + further;
     q[joint_index(leg, Joint::ankle)] += further;
