@@ -8,6 +8,7 @@
 #include "apps/program_config.hpp"
 #include "apps/text_file.hpp"
 #include "core/config_reader.hpp"
+#include "footstep/reachability.hpp"
 #include "model/robot_parameters.hpp"
 #include "planner/jump_planner.hpp"
 #include "planner/step_target.hpp"
@@ -83,6 +84,44 @@ TEST(ShippedJumps, ABrokenFileIsNamed) {
     EXPECT_NE(std::string(error.what()).find("hopscotch-broken-library"), std::string::npos);
   }
   std::filesystem::remove(file);
+}
+
+/// Whether footstep lets a robot that stands `edge` behind a change of height jump there, with room
+/// for the soles beside that edge. A riser right before the toes is the planner's to refuse.
+bool footstep_allows(const model::RobotParameters& robot, const planner::StepRequest& step) {
+  constexpr double kSoleMargin = 0.035;   // [m]
+  constexpr double kRiserMargin = 0.075;  // [m]
+  const double half_sole = 0.5 * (robot.toe + robot.heel);
+  return step.distance - step.edge >= half_sole + kSoleMargin &&
+         (step.height < 0.0 || step.edge >= half_sole + kRiserMargin) &&
+         footstep::reach_verdict(
+             config().footstep.reach,
+             {.distance = step.distance, .height = step.height, .takeoff_edge = step.edge}) ==
+             core::Reason::none;
+}
+
+TEST(ShippedJumps, WhatFootstepAllowsIsPlanned) {
+  const model::RobotParameters robot = model::RobotParameters::load(robot_file("hector"));
+  const auto start =
+      planner::start_state(planner::StartKind::stand, robot, config().stand_posture).value();
+  planner::JumpPlanner planner(config().planner, robot,
+                               shipped_jumps("hector", config().planner.steps));
+  int tried = 0;
+  for (const double height : {-0.28, -0.24, -0.20, -0.16, -0.12, -0.08, 0.08, 0.12, 0.16, 0.20}) {
+    for (double distance = 0.28; distance < 0.56; distance += 0.033) {
+      for (const double edge : {0.12, 0.15, 0.175, 0.20}) {
+        const planner::StepRequest step{.distance = distance, .height = height, .edge = edge};
+        if (!footstep_allows(robot, step)) continue;
+        ++tried;
+        const auto plan = planner.plan({.start = start,
+                                        .target = planner::step_target(step, robot),
+                                        .final_posture = config().stand_posture});
+        EXPECT_TRUE(plan) << distance << " m along, " << height << " m up, edge at " << edge
+                          << " m: " << (plan ? "" : plan.error().text());
+      }
+    }
+  }
+  EXPECT_GT(tried, 100);
 }
 
 }  // namespace
