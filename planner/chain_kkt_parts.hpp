@@ -106,17 +106,17 @@ void add_form(double weight, double slope, const std::array<std::pair<std::size_
 template <int Dof, std::size_t N>
 void add_joints(const JointRows<Dof>& joints, const double* weight, const double* slope,
                 Quadratic<N>& q) {
-  constexpr std::size_t y = 0;
-  constexpr std::size_t v = kD<Dof>;
+  constexpr std::size_t kY = 0;
+  constexpr std::size_t kV = kD<Dof>;
   const double hip = 1.0 / joints.hip_speed;
   const double ankle = 1.0 / joints.ankle_speed;
-  add_form(weight[0], slope[0], {{{y, 1.0}, {y + 1, -1.0}, {y + 2, -1.0}, {y, 0.0}}}, q);
-  add_form(weight[1], slope[1], {{{v, hip}, {v + 1, -hip}, {v + 2, -hip}, {v, 0.0}}}, q);
+  add_form(weight[0], slope[0], {{{kY, 1.0}, {kY + 1, -1.0}, {kY + 2, -1.0}, {kY, 0.0}}}, q);
+  add_form(weight[1], slope[1], {{{kV, hip}, {kV + 1, -hip}, {kV + 2, -hip}, {kV, 0.0}}}, q);
   if constexpr (Dof == kFlightDof) {
-    add_form(weight[2], slope[2], {{{v, -ankle}, {v + 1, ankle}, {v + 3, ankle}, {v, 0.0}}}, q);
-    add_form(weight[3], slope[3], {{{y, -1.0}, {y + 3, 1.0}, {y, 0.0}, {y, 0.0}}}, q);
+    add_form(weight[2], slope[2], {{{kV, -ankle}, {kV + 1, ankle}, {kV + 3, ankle}, {kV, 0.0}}}, q);
+    add_form(weight[3], slope[3], {{{kY, -1.0}, {kY + 3, 1.0}, {kY, 0.0}, {kY, 0.0}}}, q);
   } else {
-    add_form(weight[2], slope[2], {{{v, -ankle}, {v + 1, ankle}, {v, 0.0}, {v, 0.0}}}, q);
+    add_form(weight[2], slope[2], {{{kV, -ankle}, {kV + 1, ankle}, {kV, 0.0}, {kV, 0.0}}}, q);
   }
 }
 
