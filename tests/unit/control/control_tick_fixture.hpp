@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "control/control_tick.hpp"
+#include "model/kinematics.hpp"
 #include "tests/unit/control/fake_plan.hpp"
 #include "tests/unit/control/hop_config.hpp"
 
@@ -75,6 +76,22 @@ class ControlTickFixture : public ::testing::Test {
     ASSERT_EQ(control.phase(), phase);
     const bool contact = phase != core::RobotPhase::flight;
     state_.contact = {contact, contact};
+  }
+
+  /// How the left leg's targets change within a tick of flight in which the trunk turns.
+  struct FlightAnswer {
+    double hip, ankle;  // [rad]
+  };
+  FlightAnswer answer_to_turn(double pitch) {
+    ControlTick control = standing();
+    step(control);
+    control.offer(plan_);
+    run_to(control, core::RobotPhase::flight);
+    const core::JointVector straight = step(control).q;
+    state_.R_WB = model::rotation_from_rpy({0.0, pitch, 0.0});
+    const core::JointVector change = step(control).q - straight;
+    return {change[core::joint_index(core::Leg::left, core::Joint::hip_pitch)],
+            change[core::joint_index(core::Leg::left, core::Joint::ankle)]};
   }
 
   model::RobotParameters robot_ =
