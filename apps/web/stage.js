@@ -1,6 +1,7 @@
-// Camera, light and the picture.
+// Camera and the picture.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { addLights } from './light.js';
 
 // Shares of the screen's resolution: a machine without a graphics card keeps pace at a lower one.
 const kSharpness = [1, 0.7, 0.5];
@@ -12,13 +13,22 @@ function drawnBySoftware() {
   return Boolean(name) && /swiftshader|llvmpipe|software/i.test(gl.getParameter(name.UNMASKED_RENDERER_WEBGL));
 }
 
+// Without a share of transparency: three.js asks for one, and a picture that could be seen through is mixed into the
+// page pixel by pixel.
+function opaqueContext(canvas) {
+  const context = canvas.getContext('webgl2', { alpha: false, antialias: !drawnBySoftware(), preserveDrawingBuffer: true });
+  if (!context) throw new Error('this browser draws no WebGL 2');
+  return context;
+}
+
 export class Stage {
   constructor(canvas) {
     this.canvas = canvas;
     this.stale = true;
     this.level = 0;  // of sharpness that moving pictures are drawn with
     this.pace = 0;  // seconds a moving picture, averaged
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !drawnBySoftware(), preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas, context: opaqueContext(canvas) });
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;  // as is, see light.js
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(0xeef3f5);
     this.scene.fog = new THREE.Fog(0xeef3f5, 6, 16);
@@ -28,10 +38,7 @@ export class Stage {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.target.set(0.25, 0, 0.3);
     this.controls.maxPolarAngle = 1.62;
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9aa8ad, 2.1));
-    const sun = new THREE.DirectionalLight(0xffffff, 1.6);
-    sun.position.set(-2, -3, 5);
-    this.scene.add(sun);
+    addLights(this.scene);
     this.ray = new THREE.Raycaster();
     this.ray.params.Line.threshold = 0.01;
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);

@@ -1,13 +1,14 @@
 // The ground: as it is (simulation), as it was seen, where jumps were to go and where they went.
 import * as THREE from 'three';
+import { lit } from './light.js';
 
 const kColors = { observed: 0x4fa3a5, occluded: 0xd98c3f, unseen: 0x8d99a0, planned: 0x8a4fb5, flown: 0x17252b };
 const kStates = [kColors.unseen, kColors.occluded, kColors.observed].map((color) => new THREE.Color(color));
 
 // Made once: a material that comes and goes with each decision has its shader compiled each time.
 const kPaint = {
-  slab: new THREE.MeshLambertMaterial({ color: 0xd5dde0, flatShading: true, side: THREE.DoubleSide }),
-  pit: new THREE.MeshLambertMaterial({ color: 0xbfcacf }),
+  slab: new THREE.MeshBasicMaterial({ vertexColors: true }),
+  pit: new THREE.MeshBasicMaterial({ color: lit(0xbfcacf, new THREE.Vector3(0, 0, 1)) }),
   cells: new THREE.MeshBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.75, side: THREE.DoubleSide }),
   marker: new THREE.MeshBasicMaterial(),
   soles: new THREE.MeshBasicMaterial({ color: 0xf2b441, transparent: true, opacity: 0.85 }),
@@ -29,12 +30,20 @@ function slabMesh(slab, floor) {
   const top = slab.top.map((p) => new THREE.Vector3(...p));
   const bottom = top.map((p) => new THREE.Vector3(p.x, p.y, floor));
   const position = [];
-  const quad = (a, b, c, d) => { for (const p of [a, b, c, a, c, d]) position.push(p.x, p.y, p.z); };
+  const color = [];
+  const face = new THREE.Triangle();
+  const quad = (a, b, c, d) => {
+    const shade = lit(0xd5dde0, face.set(a, b, c).getNormal(new THREE.Vector3()));
+    for (const p of [a, b, c, a, c, d]) {
+      position.push(p.x, p.y, p.z);
+      color.push(shade.r, shade.g, shade.b);
+    }
+  };
   quad(...top);
   for (let i = 0; i < 4; ++i) quad(top[i], bottom[i], bottom[(i + 1) % 4], top[(i + 1) % 4]);
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.Float32BufferAttribute(position, 3));
-  geometry.computeVertexNormals();
+  geometry.setAttribute('color', new THREE.Float32BufferAttribute(color, 3));
   return new THREE.Mesh(geometry, kPaint.slab);
 }
 
