@@ -34,6 +34,7 @@ bool write_line(int descriptor, std::string_view line) {
 Console::Console(int descriptor)
     : outbox_(
           [descriptor](const Line& line) {
+            if (line.words != nullptr) return write_line(descriptor, line.words(line) + "\n");
             return write_line(descriptor, {line.text.data(), line.size});
           },
           {.bytes = kQueueBytes, .items = kQueueLines}) {}

@@ -200,7 +200,10 @@ void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
 void Pipeline::decide(const core::RobotState& state) {
   if (Decision* const decision = decision_.take(state.stamp)) receive_plan(*decision->plan);
   if (is_idle(state) && is_blind(state.stamp)) {
-    refuse(state.stamp, {core::Reason::terrain_unseen, "no usable depth frame comes any more"});
+    // Made once: it is said at every tick.
+    static const core::Refusal blind{core::Reason::terrain_unseen,
+                                     "no usable depth frame comes any more"};
+    refuse(state.stamp, blind);
   } else if (may_decide(state)) {
     ask_where(state);
   }

@@ -143,7 +143,7 @@ void RobotProgram::attend() {
       if (said.command.sequence != 0) voice_.tell(now_, said);
     }
     if (const std::optional<core::Refusal> refusal = brain_->take_refusal()) {
-      console_.say("robot: %.3f s: no jump: %s; it holds", now_.seconds(), refusal->text().c_str());
+      voice_.tell_refusal(now_, *refusal);
     }
     // The mission's end by the operator's stop: the robot stands, its drives go off.
     if (brain_->pipeline().end() == MissionEnd::stopped && !finishing_) {
@@ -153,11 +153,7 @@ void RobotProgram::attend() {
   }
   if (spare_brains_.made() != nullptr) spare_ = std::move(*spare_brains_.take(now_));
   voice_.tell(now_, session_, brain_.get());
-  constexpr double kTableEvery = 1.0;  // [s]
-  if (wire_ == Wire::listen && now_.since(printed_) >= kTableEvery) {
-    printed_ = now_;
-    print_joints();
-  }
+  if (wire_ == Wire::listen) voice_.tell_joints(now_, session_, plant_);
 }
 
 void RobotProgram::obey(const core::OperatorCommand& command) {
@@ -235,17 +231,6 @@ void RobotProgram::print_counters() {
     console_.say("robot: the loop took memory from the heap in %llu exchanges",
                  number(exchanges_with_heap_));
   }
-}
-
-void RobotProgram::print_joints() {
-  for (int joint = 0; joint < core::kJoints; ++joint) {
-    const hardware::DriveReport& drive = plant_.drives()[static_cast<std::size_t>(joint)];
-    console_.say("  %-16s %+8.4f rad  %5.1f degC  %s", hardware::joint_name(joint).c_str(),
-                 session_.readings().q[joint], drive.temperature_degC,
-                 drive.heard ? "answers" : "does not answer");
-  }
-  const std::string obstacle = session_.obstacle();
-  console_.say("  %s", obstacle.empty() ? "home: could be enabled" : obstacle.c_str());
 }
 
 }  // namespace hopscotch::apps

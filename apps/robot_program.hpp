@@ -52,7 +52,6 @@ class RobotProgram {
   void answer(const core::OperatorCommand& command, const core::Refusal& refusal,
               const std::string& remark);
   [[nodiscard]] std::unique_ptr<RobotBrain> make_brain();
-  void print_joints();
   void print_counters();
 
   RobotConfig config_;
@@ -74,9 +73,8 @@ class RobotProgram {
   std::uint64_t run_id_;
   CommandGate gate_;
   LiveRun live_;
-  RobotVoice voice_{config_.topology, console_, live_};
+  RobotVoice voice_{config_, console_, live_};
   bool finishing_ = false;  ///< The robot is to be off, then the program ends.
-  core::Stamp printed_;     ///< Last table of joints.
   std::uint64_t exchanges_with_heap_ = 0;
   /// Takes a used brain apart and makes the next. Last, so that its thread ends before the others.
   Stage<std::unique_ptr<RobotBrain>, std::unique_ptr<RobotBrain>> spare_brains_;

@@ -29,6 +29,17 @@ std::string_view session_stage_name(SessionStage stage) {
   return "off";
 }
 
+std::string enabling_obstacle(const RobotConfig& config, SessionStage stage, Reason fault,
+                              const core::JointVector& q) {
+  if (stage != SessionStage::off) {
+    return "the robot is " + std::string(session_stage_name(stage)) + ", not off";
+  }
+  if (fault != Reason::none && fault != Reason::stopped_by_user) {
+    return "fault " + std::string(core::reason_code(fault)) + " is latched: clear it first";
+  }
+  return hardware::homing_problem(config.homing, config.robot, q);
+}
+
 RobotSession::RobotSession(const RobotConfig& config, hardware::RobotPlant& plant,
                            const core::JointVector& landing_posture)
     : config_(config),
@@ -127,17 +138,6 @@ void RobotSession::stop(Reason reason, const hardware::PlantFault& plant) noexce
     soft_stop_.begin_on_ground(readings_.stamp);
   }
   stage_ = SessionStage::stopping;
-}
-
-std::string RobotSession::obstacle() const {
-  if (stage_ != SessionStage::off) {
-    return "the robot is " + std::string(session_stage_name(stage_)) + ", not off";
-  }
-  const bool fault = fault_.reason != Reason::none && fault_.reason != Reason::stopped_by_user;
-  if (fault) {
-    return "fault " + std::string(core::reason_code(fault_.reason)) + " is latched: clear it first";
-  }
-  return hardware::homing_problem(config_.homing, config_.robot, readings_.q);
 }
 
 void RobotSession::enable(SessionBrain brain) {

@@ -45,6 +45,11 @@ struct DeadlineCounters {
   double worst = 0.0;      ///< [s]
 };
 
+/// What speaks against enabling, in words; empty: nothing.
+/// @param fault The latched one. @param q Measured [rad].
+[[nodiscard]] std::string enabling_obstacle(const RobotConfig& config, SessionStage stage,
+                                            core::Reason fault, const core::JointVector& q);
+
 /// What stands between operator, controller and plant: drives go on only on the operator's word and
 /// in the home pose, gains are ramped, and whatever goes wrong ends in a soft stop that knows
 /// whether the robot is in the air. A fault stays until the operator clears it. Time comes from the
@@ -60,7 +65,9 @@ class RobotSession {
   void tick();
 
   /// What speaks against enabling now, in words; empty: nothing.
-  [[nodiscard]] std::string obstacle() const;
+  [[nodiscard]] std::string obstacle() const {
+    return enabling_obstacle(config_, stage_, fault_.reason, readings_.q);
+  }
   /// Turns the drives on for this brain, which is called for the first time when the pose is held.
   /// @pre obstacle().empty()
   void enable(SessionBrain brain);

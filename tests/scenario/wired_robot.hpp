@@ -65,6 +65,15 @@ class WiredRobot {
     return run_until([&] { return brain.ticked() && world.now().seconds() > 3.0; }, 5.0);
   }
 
+  /// What the emulation takes from the heap is not the robot's.
+  template <typename Work>
+  auto apart(const Work& work) {
+    const std::size_t before = core::allocation_count();
+    auto result = work();
+    world_allocations_ += core::allocation_count() - before;
+    return result;
+  }
+
   EmulatedRobot world;
   FaultScript script;
   hardware::RobotPlant plant;
@@ -79,14 +88,6 @@ class WiredRobot {
  private:
   std::uint64_t asked_ = 0;
   std::size_t world_allocations_ = 0;
-  /// What the emulation takes from the heap is not the robot's.
-  template <typename Work>
-  auto apart(const Work& work) {
-    const std::size_t before = core::allocation_count();
-    const auto result = work();
-    world_allocations_ += core::allocation_count() - before;
-    return result;
-  }
   hardware::PlantPorts ports(const RobotConfig& config) {
     hardware::PlantPorts ports;
     for (std::size_t i = 0; i < config.topology.buses.size(); ++i) {

@@ -135,6 +135,30 @@ TEST(Console, SayingTakesNothingFromTheHeap) {
   EXPECT_EQ(core::allocation_count(), before);
 }
 
+/// Who made the words, and of what.
+struct Fact {
+  int number = 0;
+  std::thread::id teller;
+};
+std::string words_of(const Fact& fact) {
+  return "number " + std::to_string(fact.number) +
+         (fact.teller == std::this_thread::get_id() ? " told by the loop" : "");
+}
+
+TEST(Console, WordsOfFactsAreMadeByItsOwnThread) {
+  const Pipe pipe;
+  {
+    Console console(pipe.ends[1]);
+    const std::size_t before = core::allocation_count();
+    console.tell<words_of>(Fact{7, std::this_thread::get_id()});
+    EXPECT_EQ(core::allocation_count(), before);
+  }
+  std::array<char, 100> text{};
+  const ssize_t length = read(pipe.ends[0], text.data(), text.size());
+  ASSERT_GT(length, 0);
+  EXPECT_EQ(std::string(text.data(), static_cast<std::size_t>(length)), "number 7\n");
+}
+
 TEST(CommandBox, IsBounded) {
   CommandBox box;
   int taken = 0;
