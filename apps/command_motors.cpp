@@ -16,6 +16,7 @@
 #include "apps/fault_script.hpp"
 #include "apps/installation.hpp"
 #include "apps/live_run.hpp"
+#include "apps/real_time.hpp"
 #include "apps/robot_config.hpp"
 #include "apps/step_link.hpp"
 #include "hardware/can_bus.hpp"
@@ -74,23 +75,21 @@ class MotorsProgram {
     }
   }
 
-  /// One millisecond per millisecond of wall time; drives answer at once.
+  /// One millisecond per millisecond of the clock, slowed as configured; drives answer at once.
   void run_in_real_time() {
-    std::printf("motors: in real time\n");
+    const double slowdown = config_.pacing.slowdown;
+    std::printf("motors: by the clock, a second takes %g s\n", slowdown);
     std::fflush(stdout);
     timespec next{};
     clock_gettime(CLOCK_MONOTONIC, &next);
     while (!interrupted) {
-      next.tv_nsec += 1'000'000;
-      if (next.tv_nsec >= 1'000'000'000) {
-        next.tv_nsec -= 1'000'000'000;
-        ++next.tv_sec;
-      }
+      const std::int64_t end = next.tv_nsec + std::llround(1e6 * slowdown);
+      next = {.tv_sec = next.tv_sec + end / 1'000'000'000, .tv_nsec = end % 1'000'000'000};
       answer_until(next);
       script_.play(world_);
       world_.advance();
       send_imu();
-      look(monotonic_now());
+      look(slowed_clock(slowdown));
       report();
     }
   }
@@ -114,12 +113,6 @@ class MotorsProgram {
     send_imu();
     look(world_.now());
     report();
-  }
-
-  static core::Stamp monotonic_now() {
-    timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return {now.tv_sec * 1'000'000'000LL + now.tv_nsec};
   }
 
   void look(core::Stamp robot_time) {

@@ -83,8 +83,12 @@ void touch_stack() {
   for (std::size_t i = 0; i < kBytes; i += kPage) stack[i] = 0;
 }
 
-PeriodicWake::PeriodicWake(double period)
-    : period_(std::llround(1e9 * period)), next_(monotonic_now()) {}
+core::Stamp slowed_clock(double slowdown) {
+  return {std::llround(static_cast<double>(monotonic_now()) / slowdown)};
+}
+
+PeriodicWake::PeriodicWake(double period, double slowdown)
+    : slowdown_(slowdown), period_(std::llround(1e9 * period * slowdown)), next_(monotonic_now()) {}
 
 core::Stamp PeriodicWake::wait() noexcept {
   const std::int64_t now = monotonic_now();
@@ -93,7 +97,7 @@ core::Stamp PeriodicWake::wait() noexcept {
   const timespec until{.tv_sec = next_ / kSecond, .tv_nsec = next_ % kSecond};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
   }
-  return {monotonic_now()};
+  return slowed_clock(slowdown_);
 }
 
 }  // namespace hopscotch::apps

@@ -35,17 +35,23 @@ struct ThreadsConfig {
 /// Touches the stack of the calling thread once, so that no page of it is missing later.
 void touch_stack();
 
-/// The moments k * period from the start on, by the monotonic clock.
+/// The monotonic clock, a second of which takes `slowdown` seconds.
+[[nodiscard]] core::Stamp slowed_clock(double slowdown);
+
+/// The moments k * period from the start on, by that clock.
 class PeriodicWake {
  public:
-  explicit PeriodicWake(double period);
+  /// @param period   On the clock that wait() tells [s].
+  /// @param slowdown A second of that clock takes so many of the machine's.
+  explicit PeriodicWake(double period, double slowdown = 1.0);
 
   /// Sleeps until the next moment that has not passed yet. @return Now. One that has passed is not
   /// made up for: a burst of late exchanges would be worse than a missing one.
   core::Stamp wait() noexcept;
 
  private:
-  std::int64_t period_;  // [ns]
+  double slowdown_;
+  std::int64_t period_;  // of the machine's clock [ns]
   std::int64_t next_;    // [ns]
 };
 

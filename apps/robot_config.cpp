@@ -24,6 +24,7 @@ SessionConfig SessionConfig::load(const ConfigReader& section) {
 Pacing Pacing::load(const ConfigReader& section) {
   Pacing pacing;
   pacing.mode = static_cast<Mode>(section.choice("mode", {"real_time", "lockstep"}));
+  pacing.slowdown = section.number_or("slowdown", 1.0, Range::closed(1.0, 1000.0));
   pacing.socket = section.text("socket");
   if (pacing.socket.empty() || pacing.socket.size() > 90) {
     section.reject("socket", "must be a name of 1 to 90 characters");

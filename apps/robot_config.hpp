@@ -33,7 +33,9 @@ struct SessionConfig {
 struct Pacing {
   enum class Mode : std::uint8_t { real_time, lockstep };
   Mode mode = Mode::real_time;
-  std::string socket;  ///< Name of the abstract Unix socket that the two meet at in lock-step.
+  double slowdown = 1.0;  ///< A second of the robot's clock takes so many; more than 1 on virtual
+                          ///< buses only. Optional. Without effect in lock-step.
+  std::string socket;     ///< Name of the abstract Unix socket that the two meet at in lock-step.
 
   static Pacing load(const core::ConfigReader& section);
 };

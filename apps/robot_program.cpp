@@ -1,10 +1,12 @@
 #include "apps/robot_program.hpp"
 
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <stdexcept>
 
 #include "core/allocation_count.hpp"
+#include "hardware/can_interface.hpp"
 #include "hardware/range_check.hpp"
 
 namespace hopscotch::apps {
@@ -81,6 +83,17 @@ bool RobotProgram::ranges_agree() {
   return false;
 }
 
+/// Real drives would go limp between exchanges that are further apart than configured.
+void RobotProgram::refuse_to_slow_a_robot_down() const {
+  const std::vector<hardware::CanInterface> interfaces = hardware::can_interfaces();
+  for (const hardware::BusSetup& bus : config_.topology.buses) {
+    if (hardware::is_virtual(interfaces, bus.interface_name)) continue;
+    throw std::runtime_error(bus.interface_name +
+                             " is no virtual bus: drives are not driven by a slowed clock; fix: "
+                             "`pacing.slowdown: 1`");
+  }
+}
+
 /// In lock-step with the emulated drives, or by the clock with the rights that this takes.
 void RobotProgram::start_time() {
   if (config_.pacing.mode == Pacing::Mode::lockstep) {
@@ -95,14 +108,22 @@ void RobotProgram::start_time() {
     std::fprintf(stderr, "robot: warning: %s\n", refused.c_str());
   }
   touch_stack();
-  wake_.emplace(1.0 / config_.topology.rate);
+  if (config_.pacing.slowdown > 1.0) refuse_to_slow_a_robot_down();
+  wake_.emplace(1.0 / config_.topology.rate, config_.pacing.slowdown);
+}
+
+std::string RobotProgram::clock_text() const {
+  std::array<char, 64> text{};
+  const double slowdown = config_.pacing.slowdown;
+  std::snprintf(text.data(), text.size(), "by the clock, %g times slowed", slowdown);
+  return slowdown > 1.0 ? text.data() : "by the clock";
 }
 
 ExitStatus RobotProgram::run(const std::atomic<bool>& interrupted) {
   start_time();
   console_.say("robot: run %s, %zu buses at %.0f Hz, time %s%s", run_id_text(run_id_).c_str(),
                buses_.size(), config_.topology.rate,
-               step_ ? "in lock-step with the emulated drives" : "by the clock",
+               step_ ? "in lock-step with the emulated drives" : clock_text().c_str(),
                wire_ == Wire::listen ? ", drives stay off" : "");
   if (!ranges_agree()) return ExitStatus::answer_is_no;
   while (!world_gone_) {

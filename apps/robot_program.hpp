@@ -45,6 +45,8 @@ class RobotProgram {
  private:
   [[nodiscard]] hardware::PlantPorts make_ports();
   void start_time();
+  void refuse_to_slow_a_robot_down() const;
+  [[nodiscard]] std::string clock_text() const;
   [[nodiscard]] bool ranges_agree();
   void attend();
   void obey(const core::OperatorCommand& command);

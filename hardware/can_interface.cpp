@@ -160,4 +160,10 @@ std::vector<CanInterface> can_interfaces() {
   }
 }
 
+bool is_virtual(const std::vector<CanInterface>& interfaces, const std::string& name) {
+  return std::any_of(interfaces.begin(), interfaces.end(), [&](const CanInterface& interface) {
+    return interface.name == name && interface.kind == "vcan";
+  });
+}
+
 }  // namespace hopscotch::hardware

@@ -29,4 +29,7 @@ struct CanInterface {
 /// none. @throws std::runtime_error if the kernel does not answer.
 [[nodiscard]] std::vector<CanInterface> can_interfaces();
 
+/// @return false too if there is no interface of this name.
+[[nodiscard]] bool is_virtual(const std::vector<CanInterface>& interfaces, const std::string& name);
+
 }  // namespace hopscotch::hardware
