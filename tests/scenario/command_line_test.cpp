@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 #include "tests/scenario/program.hpp"
@@ -52,6 +53,20 @@ TEST_F(CommandLine, BadUsageIsStatusTwo) {
   EXPECT_EQ(call("target 0.3 --clear").status, 2);
   EXPECT_EQ(call("target far").status, 2);
   EXPECT_EQ(call("command dance").status, 2);
+}
+
+/// The guide's own example is the first that a new user tries.
+TEST_F(CommandLine, TheScenarioOfTheGuideIsCompleted) {
+  std::ifstream file(fs::path(HOPSCOTCH_SOURCE_DIR) / "docs/guide.md");
+  const std::string guide{std::istreambuf_iterator<char>(file), {}};
+  const std::string fence = "```yaml\n";
+  const std::size_t begin = guide.find(fence) + fence.size();
+  const fs::path scenario =
+      write("my-steps.yaml", guide.substr(begin, guide.find("```", begin) - begin));
+  const Answer answer = call("run " + scenario.string() + " --seed 3 --no-pictures --out " +
+                             (folder_ / "run").string());
+  EXPECT_EQ(answer.status, 0) << answer.output;
+  EXPECT_NE(answer.output.find("my-steps: completed"), std::string::npos) << answer.output;
 }
 
 TEST_F(CommandLine, ABrokenScenarioNamesFileLineAndRuleAndWritesNothing) {
