@@ -3,11 +3,11 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
-#include <time.h>
 
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <ctime>
 #include <system_error>
 
 namespace hopscotch::apps {

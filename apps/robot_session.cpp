@@ -114,7 +114,7 @@ core::JointCommand RobotSession::ramped_hold() const {
 }
 
 core::JointCommand RobotSession::controlled() {
-  const core::JointCommand command = brain_.tick(readings_);
+  core::JointCommand command = brain_.tick(readings_);
   const core::ControlStatus status = brain_.status();
   if (status.fault != Reason::none) {
     stop(status.fault, {});
