@@ -1,14 +1,18 @@
 #include "apps/command_operator.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "apps/command_gate.hpp"
 #include "apps/live_run.hpp"
 #include "apps/operator_client.hpp"
+#include "apps/stopwatch.hpp"
 #include "core/config_reader.hpp"
 
 namespace hopscotch::apps {
@@ -56,6 +60,25 @@ std::string in_words(const msgs::Ack& ack) {
   return text;
 }
 
+/// A jump that has taken off is locked; the wish is for the next one and is asked again once that
+/// is open. Other refusals are final.
+std::optional<msgs::Ack> ask_until_open(OperatorClient& client, core::OperatorCommand command,
+                                        double patience) {
+  constexpr double kSoonest = 0.05;  // between two questions [s]
+  constexpr double kLatest = 0.3;    // a run need not go at the pace of the clock [s]
+  const Stopwatch watch;
+  for (;;) {
+    command.sequence = wall_clock_us();
+    const double left = patience - 1e-3 * watch.milliseconds();
+    std::optional<msgs::Ack> ack = client.ask(command, left);
+    const bool locked = ack && !ack->accepted && std::isfinite(ack->start_in);
+    if (!locked) return ack;
+    const double wait = std::clamp(ack->start_in, kSoonest, kLatest);
+    if (1e-3 * watch.milliseconds() + wait >= patience) return ack;
+    std::this_thread::sleep_for(std::chrono::duration<double>(wait));
+  }
+}
+
 std::string in_json(const std::optional<msgs::Ack>& ack, const std::string& run,
                     const std::string& words) {
   nlohmann::ordered_json json = {{"schema", "hopscotch.answer/1"}, {"run_id", run}};
@@ -87,8 +110,7 @@ ExitStatus ask_run(const AskOptions& options, core::OperatorCommand command) {
   if (found.run) {
     run = run_id_text(*found.run);
     command.run_id = *found.run;
-    command.sequence = wall_clock_us();
-    ack = client.ask(command, options.patience);
+    ack = ask_until_open(client, command, options.patience);
     words = ack ? in_words(*ack) : "nobody answered: run " + run + " was on, but gave no answer";
   }
   std::fprintf(options.json ? stderr : stdout, "%s\n", words.c_str());

@@ -35,7 +35,8 @@ void add_target_command(CLI::App& app, Action& action) {
       "target", "Overrides the next landing target of a running program and prints its answer");
   command->footer(
       "The place is judged like any other: by map, reach and the plan's certificate. It holds for "
-      "one jump.\nExit status 0: accepted, 1: refused or nobody answered.\n"
+      "one jump, the next to take off; one under way is locked.\nExit status 0: accepted, 1: "
+      "refused or nobody answered.\n"
       "Example: hopscotch target 0.35 0.05       35 cm ahead, 5 cm up\n"
       "         hopscotch target 0.3 --yaw 0.1   with a turn to the left\n"
       "         hopscotch target --clear         drop it again");

@@ -48,9 +48,9 @@ std::optional<core::TargetOverride> OperatorDesk::due() const {
   return target_ && stage_ != Stage::promised ? target_->target : std::nullopt;
 }
 
-void OperatorDesk::refuse_target(const Refusal& refusal) {
+void OperatorDesk::refuse_target(const Refusal& refusal, double open_in) {
   if (!due()) return;
-  refuse(*target_, refusal);
+  refuse(*target_, refusal, open_in);
   target_.reset();
 }
 
@@ -74,8 +74,9 @@ void OperatorDesk::accept(const OperatorCommand& command, std::string_view remar
       {.command = command, .refusal = {}, .start_in = start_in, .remark = std::string(remark)});
 }
 
-void OperatorDesk::refuse(const OperatorCommand& command, Refusal refusal) {
-  answers_.push_back({.command = command, .refusal = std::move(refusal), .remark = {}});
+void OperatorDesk::refuse(const OperatorCommand& command, Refusal refusal, double open_in) {
+  answers_.push_back(
+      {.command = command, .refusal = std::move(refusal), .start_in = open_in, .remark = {}});
 }
 
 std::vector<core::OperatorAnswer> OperatorDesk::take_answers() {

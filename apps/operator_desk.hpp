@@ -32,7 +32,8 @@ class OperatorDesk {
   /// Whether the target that is due is only to be judged, because the robot is held.
   [[nodiscard]] bool check_only() const { return mode_ != Mode::free; }
   /// The target that was due cannot be.
-  void refuse_target(const core::Refusal& refusal);
+  /// @param open_in Until it may be asked again [s]; NaN: it is not a matter of time.
+  void refuse_target(const core::Refusal& refusal, double open_in = core::kNaN);
   /// The target that was due has been planned. @param start_in Until the jump starts [s].
   void accept_target(double start_in);
 
@@ -40,7 +41,8 @@ class OperatorDesk {
   ///                 wish: nobody waits for its answer.
   void accept(const core::OperatorCommand& command, std::string_view remark,
               double start_in = core::kNaN);
-  void refuse(const core::OperatorCommand& command, core::Refusal refusal);
+  void refuse(const core::OperatorCommand& command, core::Refusal refusal,
+              double open_in = core::kNaN);
   /// Answers since the last call, oldest first.
   [[nodiscard]] std::vector<core::OperatorAnswer> take_answers();
 

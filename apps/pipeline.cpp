@@ -198,8 +198,10 @@ void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
 
 /// Where to, and how: the next jump is chosen and planned while the present one lands.
 void Pipeline::decide(const core::RobotState& state) {
+  refuse_if_locked();
   if (Decision* const decision = decision_.take(state.stamp)) receive_plan(*decision->plan);
   if (is_idle(state) && is_blind(state.stamp)) {
+    for_operator_ = desk_.due().has_value();
     // Made once: it is said at every tick.
     static const core::Refusal blind{core::Reason::terrain_unseen,
                                      "no usable depth frame comes any more"};
@@ -225,9 +227,11 @@ void Pipeline::balance(core::Stamp now) {
   if (balance_.made() != nullptr) events_.mpc_ms = balance_.work_ms();
 }
 
-/// The next jump is wanted and nothing is known of it.
+/// The next jump is wanted and nothing is known of it, or the operator wants another one than that
+/// which waits.
 bool Pipeline::is_idle(const core::RobotState& state) const {
-  if (end_ || control_->has_next() || !decision_.vacant()) return false;
+  if (end_ || !decision_.vacant()) return false;
+  if (control_->has_next() && !desk_.due()) return false;
   if (held() && !desk_.due()) return false;
   const RobotPhase phase = control_->phase();
   if (!core::is_standing(phase) && phase != RobotPhase::landing) return false;

@@ -191,6 +191,8 @@ class Pipeline {
   void enable(const core::OperatorCommand& command);
   void clear_fault(const core::OperatorCommand& command);
   void next_best(const core::Refusal& refusal);
+  [[nodiscard]] bool is_locked() const;
+  void refuse_if_locked();
 
   ProgramConfig config_;
   model::RobotParameters robot_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -55,7 +56,27 @@ std::optional<DecisionView> Pipeline::decision_view() const {
   return view;
 }
 
-/// What is still being planned makes way for a newer wish; a plan that was handed over is flown.
+/// From take-off to touchdown a jump goes where it was planned to.
+bool Pipeline::is_locked() const {
+  const RobotPhase phase = control_->phase();
+  const bool under_way = core::is_pushing_off(phase) || phase == RobotPhase::flight;
+  return under_way && control_->plan().id != 0;  // neither a fall nor a recovery hop
+}
+
+/// The operator chose a place as seen from where the robot stood: after the jump that is another
+/// one.
+void Pipeline::refuse_if_locked() {
+  if (!desk_.due() || !is_locked()) return;
+  decision_.drop();
+  const core::ControlStatus& status = control_->status();
+  const double open_in = std::max(0.0, control_->plan().touchdown_time - status.plan_time);
+  desk_.refuse_target({Reason::not_now,
+                       "the jump under way is locked until it has landed; until it rises "
+                       "`hopscotch command hold` calls it off"},
+                      open_in);
+}
+
+/// What has not taken off makes way for a newer wish.
 void Pipeline::apply_target(const core::OperatorCommand& command) {
   if (command.target) {
     if (core::is_limp(control_->phase())) {

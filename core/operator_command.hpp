@@ -47,10 +47,9 @@ struct OperatorCommand {
 /// The answer to a command. Every command gets exactly one, a target once it has been planned.
 struct OperatorAnswer {
   OperatorCommand command;
-  Refusal refusal;  ///< Reason `none`: accepted.
-  double start_in =
-      kNaN;            ///< Until the jump to the target starts [s]; NaN: not known yet, or none.
-  std::string remark;  ///< What follows, for people.
+  Refusal refusal;         ///< Reason `none`: accepted.
+  double start_in = kNaN;  ///< Until the jump starts, or may be asked for again [s]; NaN: unknown.
+  std::string remark;      ///< What follows, for people.
 
   [[nodiscard]] bool accepted() const { return refusal.reason == Reason::none; }
 };

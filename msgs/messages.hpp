@@ -87,7 +87,7 @@ struct Ack {
   std::uint64_t command_sequence = 0;  ///< Of the command.
   bool accepted = false;
   core::Refusal refusal;         ///< Why not; when accepted its sentence says what follows.
-  double start_in = core::kNaN;  ///< Until the jump to the target starts [s]; NaN: not known, none.
+  double start_in = core::kNaN;  ///< Until the jump starts, or may be asked for again [s].
 };
 
 /// Computing time of the stages whose work ended since the last status [ms]; NaN: none ended.

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/robot_voice.hpp"
 #include "sim/sim_camera.hpp"
@@ -54,6 +55,33 @@ TEST(WiredRobot, StandsUpLeapsThreeTimesAndStopsOnCommand) {
   EXPECT_TRUE(robot.run_until([&] { return robot.session.stage() == SessionStage::off; }, 5.0));
   robot.run(0.01);
   EXPECT_FALSE(any_drive_on(robot));
+}
+
+TEST(WiredRobot, RefusesATargetForTheJumpThatIsUnderWay) {
+  WiredRobot robot(testing::wired_config());
+  std::vector<core::OperatorAnswer> answers;
+  robot.each_tick = [&](const core::RobotState&) {
+    if (!robot.brain.ticked()) return;
+    for (const auto& answer : robot.brain.pipeline().events().answers) answers.push_back(answer);
+  };
+  ASSERT_TRUE(robot.stand());
+  robot.ask(core::ModeRequest::jump);
+  const auto phase = [&] { return robot.brain.pipeline().status().phase; };
+  ASSERT_TRUE(robot.run_until([&] { return phase() == RobotPhase::flight; }, 6.0));
+  const core::LandingTarget target = robot.brain.pipeline().plan().target;
+  answers.clear();
+  core::OperatorCommand command;
+  command.sequence = 77;
+  command.target = core::TargetOverride{.distance = target.distance + 0.10};
+  robot.brain.apply(command);
+  ASSERT_TRUE(robot.run_until([&] { return !answers.empty(); }, 0.01));
+  EXPECT_EQ(answers[0].command.sequence, 77U);
+  EXPECT_EQ(answers[0].refusal.reason, Reason::not_now) << answers[0].refusal.sentence;
+  EXPECT_EQ(robot.brain.pipeline().plan().target.distance, target.distance);
+  ASSERT_TRUE(robot.run_until([&] { return robot.brain.jumps() == 1; }, 2.0));
+  robot.run(1.5);
+  EXPECT_FALSE(robot.fallen);
+  EXPECT_NEAR(robot.world.truth().state.p_WB.x(), target.distance, 0.06);
 }
 
 // Planning, MPC and perception on threads of their own, as on a robot. The clock is slowed down, so

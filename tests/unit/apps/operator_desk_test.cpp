@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace hopscotch::apps {
 namespace {
 
@@ -39,6 +41,18 @@ TEST(OperatorDesk, ARefusedTargetIsForgotten) {
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_EQ(answers[0].refusal.reason, Reason::gap_too_wide);
   EXPECT_FALSE(desk.due());
+}
+
+TEST(OperatorDesk, ARefusalTellsWhenATargetMayBeAskedAgain) {
+  OperatorDesk desk;
+  desk.take_target(target_at(0.3, 1));
+  desk.refuse_target({Reason::not_now, "locked"}, 0.4);
+  desk.take_target(target_at(0.3, 2));
+  desk.refuse_target({Reason::out_of_reach, ""});
+  const auto answers = desk.take_answers();
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(answers[0].start_in, 0.4);
+  EXPECT_TRUE(std::isnan(answers[1].start_in)) << "never";
 }
 
 TEST(OperatorDesk, ANewerTargetReplacesTheOlderWhichIsTold) {
