@@ -15,6 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kImageRate = 30.0;  // where the file has no stamps [Hz]
+/// Nobody carries a camera so far from one image to the next [m]: such poses are in another unit.
+constexpr double kStrideMax = 5.0;
+constexpr double kStampMax = 4e9;  // the year 2096 [s]
 
 std::optional<fs::path> pose_file_in(const fs::path& folder) {
   std::optional<fs::path> found;
@@ -40,6 +43,9 @@ CameraPose pose_of_line(const std::string& place, const std::vector<double>& num
   constexpr double kUnit = 0.01;
   if (!(std::abs(q.norm() - 1.0) <= kUnit)) {
     throw core::ConfigError(place + ": the quaternion is not of length 1");
+  }
+  if (stamped && !(std::abs(numbers[0]) <= kStampMax)) {
+    throw core::ConfigError(place + ": the stamp is in seconds; this one is beyond the year 2096");
   }
   CameraPose pose;
   pose.stamp =
@@ -101,6 +107,12 @@ std::vector<CameraPose> poses_of_images(const fs::path& folder,
     if (result[i].stamp <= result[i - 1].stamp) {
       throw core::ConfigError(file->string() + ": time goes backwards at " +
                               images[i].filename().string());
+    }
+    const double stride = (result[i].X_VC.translation() - result[i - 1].X_VC.translation()).norm();
+    if (stride > kStrideMax) {
+      throw core::ConfigError(file->string() + ": the camera would have moved " +
+                              std::to_string(std::lround(stride)) + " m before " +
+                              images[i].filename().string() + "; poses are read in metres");
     }
   }
   return result;

@@ -5,6 +5,7 @@
 #include <deque>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "apps/pose_file.hpp"
@@ -198,6 +199,18 @@ void check_log(const fs::path& log, const msgs::RunLogSummary& read, const Repla
   }
 }
 
+/// A number at the end of a name counts by its value: 2 before 10.
+bool comes_before(const fs::path& a, const fs::path& b) {
+  const auto parts = [](const fs::path& image) {
+    const std::string stem = image.stem().string();
+    const std::size_t last = stem.find_last_not_of("0123456789");
+    const std::size_t digits = last == std::string::npos ? 0 : last + 1;
+    const std::size_t first = std::min(stem.find_first_not_of('0', digits), stem.size());
+    return std::tuple(stem.substr(0, digits), stem.size() - first, stem.substr(first), image);
+  };
+  return parts(a) < parts(b);
+}
+
 std::vector<fs::path> depth_images(const fs::path& folder) {
   std::vector<fs::path> images;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -210,7 +223,7 @@ std::vector<fs::path> depth_images(const fs::path& folder) {
   if (images.empty()) {
     throw core::ConfigError(folder.string() + ": holds no depth image (PNG, PGM or TIFF)");
   }
-  std::sort(images.begin(), images.end());
+  std::sort(images.begin(), images.end(), comes_before);
   return images;
 }
 

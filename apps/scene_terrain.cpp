@@ -35,6 +35,8 @@ constexpr std::size_t kPointsMin = 300;
 /// Clouds whose points are farther away than this in the median count millimetres.
 constexpr double kMedianMax = 60.0;  // [m]
 constexpr double kMedianMin = 0.05;  // [m]
+/// Who holds a camera holds it lower [m]: an image that says otherwise is in another unit.
+constexpr double kCameraHeightMax = 2.5;
 /// Share of the ground ahead without a reading from which on a frame counts as degraded.
 constexpr double kDropoutMax = 0.40;
 
@@ -116,6 +118,19 @@ std::vector<ReportedPlane> in_world(const std::vector<perception::PlanePatch>& p
     result.push_back({(X_WR * plane.centroid).z(), slope, plane.points});
   }
   return result;
+}
+
+/// Why the unit of an image may be another one than stated; empty where it may not. A flat floor is
+/// flat in any unit, steps are not as high as they are: nothing is to be aimed at.
+std::string doubt_about_unit(const SceneRecording& recording, const SceneTerrain& scene,
+                             double ground) {
+  const double height = scene.X_WR.translation().z() - ground;
+  if (!recording.frame || height <= kCameraHeightMax) return "";
+  char text[140];
+  std::snprintf(text, sizeof text,
+                "degraded: the camera would be %.1f m above the ground; is --depth-scale right?",
+                height);
+  return text;
 }
 
 /// @param floor  Nothing when the pose was stated and no floor seen.
@@ -232,7 +247,13 @@ SceneTerrain look_at_scene(const SceneRequest& request, const SceneRecording& re
   report.planes = in_world(planes, scene.X_WR);
   report.choice = footstep::LandingSelector(config.footstep, robot)
                       .choose({scene.map, report.terrain}, state, {});
-  report.status = status_of(recording, scene, ground, frame->floor);
+  report.status = doubt_about_unit(recording, scene, ground);
+  if (!report.status.empty()) {
+    report.choice = {};
+    report.choice.refusal = {core::Reason::terrain_unseen, "its unit is in doubt"};
+  } else {
+    report.status = status_of(recording, scene, ground, frame->floor);
+  }
   report.latency_ms = watch.milliseconds();
   return scene;
 }

@@ -40,6 +40,18 @@ bool is_pose_finite(const core::RobotState& state) {
   return state.p_WB.allFinite() && state.R_WB.allFinite() && state.q.allFinite();
 }
 
+/// Lenses of another image size put their axis beside the middle of this one or see far too much or
+/// too little.
+bool fits_image(const core::CameraIntrinsics& camera) {
+  constexpr double kOffCentre = 0.25;  // shares of the image's size
+  constexpr double kViewMin = 0.25;    // width over focal length: 14 degrees
+  constexpr double kViewMax = 4.0;     // 127 degrees
+  const double view = camera.width / camera.fx;
+  return view >= kViewMin && view <= kViewMax &&
+         std::abs(camera.cx - 0.5 * camera.width) <= kOffCentre * camera.width &&
+         std::abs(camera.cy - 0.5 * camera.height) <= kOffCentre * camera.height;
+}
+
 bool is_sound(const core::DepthFrame& frame) {
   const core::CameraIntrinsics& camera = frame.intrinsics;
   const bool sized = camera.width > 0 && camera.height > 0 &&
@@ -47,7 +59,7 @@ bool is_sound(const core::DepthFrame& frame) {
                                                static_cast<std::size_t>(camera.height);
   const bool lens = std::isfinite(camera.fx) && camera.fx > 0.0 && std::isfinite(camera.fy) &&
                     camera.fy > 0.0 && std::isfinite(camera.cx) && std::isfinite(camera.cy);
-  return sized && lens && frame.X_BC.matrix().allFinite();
+  return sized && lens && fits_image(camera) && frame.X_BC.matrix().allFinite();
 }
 
 Eigen::Isometry3d pose_of_trunk(const core::RobotState& state) {

@@ -21,7 +21,7 @@ enum class MapStatus : std::uint8_t {
   moving,     ///< Trunk too fast: time and pose errors would smear the map.
   blind,      ///< No usable pixel.
   stale,      ///< Not newer than the newest frame in the map.
-  bad_frame,  ///< Size, intrinsics or mounting pose are nonsense.
+  bad_frame,  ///< Size, intrinsics or mounting pose are nonsense or do not fit together.
   bad_state,  ///< Pose or joint angles are not finite.
 };
 

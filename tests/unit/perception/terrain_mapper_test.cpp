@@ -269,6 +269,44 @@ TEST_F(TerrainMapperTest, BadInputIsNamedAndChangesNothing) {
   EXPECT_EQ(mapper_.integrate(good, state), MapStatus::stale);
 }
 
+TEST_F(TerrainMapperTest, IntrinsicsOfAnotherImageSizeAreRefused) {
+  const core::RobotState state = test::standing_at(kFlat, 0.0, 0.0, 0.1);
+  const core::DepthFrame good = test::render(kFlat, state, 160, 120);
+  for (const double times : {0.25, 2.0, 4.0}) {
+    core::DepthFrame frame = good;
+    core::CameraIntrinsics& lens = frame.intrinsics;
+    for (double* const number : {&lens.fx, &lens.fy, &lens.cx, &lens.cy}) *number *= times;
+    EXPECT_EQ(mapper_.integrate(frame, state), MapStatus::bad_frame) << times;
+  }
+  core::DepthFrame frame = good;
+  frame.intrinsics.fx *= 10.0;
+  EXPECT_EQ(mapper_.integrate(frame, state), MapStatus::bad_frame) << "a view of 8 degrees";
+  EXPECT_EQ(mapper_.map().frames, 0);
+  EXPECT_EQ(mapper_.integrate(good, state), MapStatus::fused);
+}
+
+TEST_F(TerrainMapperTest, MillimetresForMetresAreNoReadings) {
+  const core::RobotState state = test::standing_at(kFlat, 0.0, 0.0, 0.1);
+  for (const float unit : {1000.0F, 0.001F}) {
+    core::DepthFrame frame = test::render(kFlat, state, 160, 120);
+    for (float& z : frame.depth) z *= unit;
+    EXPECT_EQ(mapper_.integrate(frame, state), MapStatus::blind) << unit;
+  }
+  EXPECT_EQ(mapper_.map().frames, 0);
+}
+
+TEST_F(TerrainMapperTest, TimeThatGoesBackwardsAddsNothing) {
+  const core::RobotState state = test::standing_at(kFlat, 0.0, 0.0, 0.2);
+  core::DepthFrame frame = test::render(kFlat, state, 160, 120);
+  frame.stamp = core::Stamp::from_seconds(0.2);
+  ASSERT_EQ(mapper_.integrate(frame, state), MapStatus::fused);
+  const core::TerrainMap before = mapper_.map();
+  frame.stamp = core::Stamp::from_seconds(0.1);
+  for (float& z : frame.depth) z *= 0.5F;
+  EXPECT_EQ(mapper_.integrate(frame, state), MapStatus::stale);
+  EXPECT_TRUE(same_cells(before, mapper_.map()));
+}
+
 TEST_F(TerrainMapperTest, SameFramesGiveTheSameMapBitByBit) {
   TerrainMapper other(test::perception_config(), test::hector());
   for (TerrainMapper* mapper : {&mapper_, &other}) {
