@@ -86,6 +86,31 @@ TEST_F(RecordedScene, CinderBlocksLieAsHighAsTheyAre) {
   EXPECT_TRUE(tilted) << "blocks tilted by 12.4 to 14.4 degrees";
 }
 
+/// What the labels say: the tops lie 0.198 and 0.056 m above the table, and where the soles go the
+/// boxes begin 0.477 and 0.423 m ahead.
+TEST_F(RecordedScene, BoxesOnATableLieAsTheyAreLabelled) {
+  constexpr struct {
+    const char* file;
+    double top;
+    double front;
+  } kScenes[] = {{"labelled_boxes/mOSD_test10.pcd", 0.198, 0.477},
+                 {"labelled_boxes/mOSD_test20.pcd", 0.056, 0.423}};
+  for (const auto& labelled : kScenes) {
+    SCOPED_TRACE(labelled.file);
+    look(labelled.file, {});
+    if (IsSkipped() || HasFatalFailure()) return;
+    EXPECT_NEAR(plane_near(0.0), 0.0, 0.003) << "the table";
+    EXPECT_NEAR(plane_near(labelled.top), labelled.top, 0.005) << "the top of the box";
+    ASSERT_GE(features().edge_count, 1U);
+    EXPECT_NEAR(features().edges[0].x, labelled.front, 0.010);
+    const core::TargetChoice& choice = scene_.report.choice;
+    constexpr double kToe = 0.085;  // ahead of the middle of the sole, at most [m]
+    for (std::size_t i = 0; i < choice.ranked_count; ++i) {
+      EXPECT_LT(choice.ranked[i].distance + kToe, labelled.front) << "no toe at the box";
+    }
+  }
+}
+
 TEST_F(RecordedScene, DiningTableIsAsHighAsItIs) {
   look("dining/ch5_depth_1.pgm", {}, {.intrinsics = {{518.0, 519.0, 325.5, 253.5}}});
   if (IsSkipped() || HasFatalFailure()) return;
