@@ -65,7 +65,7 @@ std::vector<Run> level_runs(const OneStepConfig& config, const std::vector<Slice
   return runs;
 }
 
-constexpr double kStepShare = 0.04;  // of a cell's variance, see below
+constexpr double kStepShare = 0.025;  // of a cell's variance, see below
 
 /// Variance of a height averaged over the end of a tread, as far as it counts for a step: what all
 /// frames share lifts both sides of a step alike, and a cell's own error averages out over the end.
@@ -96,11 +96,14 @@ bool contains_blind(const std::vector<Slice>& slices, const Tread& before, const
   });
 }
 
-/// Standard deviation of the step between two treads [m]. Behind the blind strip lies what is known
-/// by the soles: it shares no error with what is seen, and its own does not average out.
+/// Standard deviation of the step between two treads [m]. A tread that ends with the soles, or with
+/// the blind strip before it, is known by them: it shares no error with what is seen, and its own
+/// does not average out.
 double step_sigma(const std::vector<Slice>& slices, const Tread& before, const Tread& behind) {
+  constexpr double kSolesEnd = 0.12;  // and a cell or two, ahead of the stance's middle [m]
   const double variance = before.variance + behind.variance;
-  return std::sqrt(contains_blind(slices, before, behind) ? variance / kStepShare : variance);
+  const bool by_soles = before.end < kSolesEnd || contains_blind(slices, before, behind);
+  return std::sqrt(by_soles ? variance / kStepShare : variance);
 }
 
 /// Joins treads of one level across holes that are no gap and across the blind strip.

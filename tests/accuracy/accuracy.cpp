@@ -96,7 +96,9 @@ class Look {
     const double tilt = setup.perception.noise.tilt * normal(random);
     const double rise = setup.perception.noise.floor * normal(random);
     const Eigen::Isometry3d X_BC = sim::camera_mounting(setup.camera);
-    (void)mapper_.anchor_support(setup.standing);
+    core::RobotState on_soles = setup.standing;
+    on_soles.p_WB.z() += setup.perception.mapper.support_sigma * normal(random);
+    (void)mapper_.anchor_support(on_soles);
     std::vector<float> exact;
     for (int i = 0; i < kFrames; ++i) {
       const core::RobotState truth = crouching(setup, i);
@@ -191,8 +193,9 @@ class Look {
       used[*best] = true;
       const core::TerrainEdge& found = terrain_.edges[*best];
       figures.edge.add(found.x - edge.x, found.sigma);
-      // What is hidden behind a step down may be a gap; its far side is then another tread.
-      const bool is_gap = found.kind == core::EdgeKind::gap_near;
+      // What is hidden beside a step may be a gap; its other side is then another tread.
+      const bool is_gap =
+          found.kind == core::EdgeKind::gap_near || found.kind == core::EdgeKind::gap_far;
       const bool once = edge.far_side || (edge.width == 0.0 && !is_gap);
       if (once && std::isfinite(found.step) && std::abs(edge.step) >= 0.03) {
         figures.step.add(found.step - edge.step, step_sigmas_[*best]);

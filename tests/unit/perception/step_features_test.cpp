@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "perception/edge_lines.hpp"
 #include "tests/unit/perception/flat_map.hpp"
@@ -17,13 +19,15 @@ constexpr double kHalfCell = 0.0075 + 0.0025;  // grid plus half a slice [m]
 class StepFeaturesTest : public ::testing::Test {
  protected:
   core::OneStepTerrain features(const test::Course& course) {
-    const core::TerrainMap map = test::known_map(course);
+    return features(test::known_map(course));
+  }
+  core::OneStepTerrain features(const core::TerrainMap& map) {
     const std::vector<Slice> slices = cut_slices(config_, map, stance_);
     DividedLine line{.treads = find_treads(config_, slices), .breaks = {}};
     line.breaks = find_breaks(map, stance_, line.treads);
     treads_ = line.treads;
     core::OneStepTerrain terrain;
-    static_cast<void>(list_features(config_, slices, line, terrain));
+    step_sigmas_ = list_features(config_, slices, line, terrain);
     return terrain;
   }
 
@@ -31,6 +35,7 @@ class StepFeaturesTest : public ::testing::Test {
   StancePose stance_{
       .p_WS = {0.0, 0.0, 0.0}, .heading = 0.0, .half_stance = 0.098, .track_half_width = 0.04};
   std::vector<Tread> treads_;
+  std::vector<double> step_sigmas_;
 };
 
 TEST_F(StepFeaturesTest, LevelGroundHasNone) {
@@ -62,6 +67,20 @@ TEST_F(StepFeaturesTest, StepsUpAndDownAreEdgesWithTheirHeight) {
   EXPECT_NEAR(terrain.edges[1].x, 0.90, kHalfCell);
   EXPECT_NEAR(terrain.edges[1].step, -0.17, 1e-6);
   EXPECT_EQ(terrain.gap_count, 0U);
+}
+
+TEST_F(StepFeaturesTest, AStepFromWhatTheSolesKnowIsLessSureThanOneThatWasSeen) {
+  const test::Course course{.blocks = {{-1.0, 0.20, 0.0}, {0.32, 3.0, 0.06}}};
+  core::TerrainMap map = test::known_map(course);
+  const core::OneStepTerrain seen = features(map);
+  ASSERT_EQ(seen.edge_count, 2U);
+  const double sure = step_sigmas_[1];
+  test::set_stretch(map, 0.10, 0.28, {.upper = std::numeric_limits<float>::infinity()});
+  const core::OneStepTerrain guessed = features(map);
+  ASSERT_EQ(guessed.edge_count, 2U);
+  EXPECT_NEAR(guessed.edges[1].step, 0.06, 1e-6);
+  EXPECT_GT(step_sigmas_[1], 2.0 * sure);
+  EXPECT_NEAR(step_sigmas_[1], std::sqrt(2.0 * 4e-6), 1e-4) << "that of a cell on either side";
 }
 
 TEST_F(StepFeaturesTest, StepAskewIsOneEdgeWhereItCrossesTheJumpLine) {
