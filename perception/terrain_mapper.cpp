@@ -36,8 +36,14 @@ constexpr double kHiddenCells = 1.6;
 /// Cells nearer to the camera's height than this are seen edge-on and say nothing about height.
 constexpr double kLevelSight = 0.05;  // [m]
 
-bool is_pose_finite(const core::RobotState& state) {
-  return state.p_WB.allFinite() && state.R_WB.allFinite() && state.q.allFinite();
+bool is_rotation(const Eigen::Matrix3d& R) {
+  constexpr double kTolerance = 0.01;
+  return R.allFinite() &&
+         (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kTolerance;
+}
+
+bool is_pose_sound(const core::RobotState& state) {
+  return state.p_WB.allFinite() && is_rotation(state.R_WB) && state.q.allFinite();
 }
 
 /// Lenses of another image size put their axis beside the middle of this one or see far too much or
@@ -59,7 +65,8 @@ bool is_sound(const core::DepthFrame& frame) {
                                                static_cast<std::size_t>(camera.height);
   const bool lens = std::isfinite(camera.fx) && camera.fx > 0.0 && std::isfinite(camera.fy) &&
                     camera.fy > 0.0 && std::isfinite(camera.cx) && std::isfinite(camera.cy);
-  return sized && lens && fits_image(camera) && frame.X_BC.matrix().allFinite();
+  return sized && lens && fits_image(camera) && frame.X_BC.matrix().allFinite() &&
+         is_rotation(frame.X_BC.linear());
 }
 
 Eigen::Isometry3d pose_of_trunk(const core::RobotState& state) {
@@ -209,7 +216,7 @@ MapStatus TerrainMapper::integrate(const core::DepthFrame& frame,
                                    const core::RobotState& at_exposure) {
   const core::TerrainMap& map = memory_->window.map;
   if (!is_sound(frame)) return MapStatus::bad_frame;
-  if (!is_pose_finite(at_exposure)) return MapStatus::bad_state;
+  if (!is_pose_sound(at_exposure)) return MapStatus::bad_state;
   if (map.frames > 0 && frame.stamp <= map.stamp) return MapStatus::stale;
   // Written so that a speed that is not a number counts as too fast.
   const bool slow = at_exposure.v_WB.norm() <= config_.mapper.speed_max &&
@@ -258,7 +265,7 @@ MapStatus TerrainMapper::fuse(const core::DepthFrame& frame, const BodyCapsules&
 }
 
 MapStatus TerrainMapper::anchor_support(const core::RobotState& state) {
-  if (!is_pose_finite(state)) return MapStatus::bad_state;
+  if (!is_pose_sound(state)) return MapStatus::bad_state;
   follow(config_.mapper, window_centre(config_.mapper, pose_of_trunk(state)), memory_->window);
   for (const Eigen::Isometry3d& X_WF : model::sole_poses(robot_, state)) {
     fuse_sole(config_.mapper, robot_, X_WF, memory_->window);

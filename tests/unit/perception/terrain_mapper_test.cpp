@@ -260,7 +260,13 @@ TEST_F(TerrainMapperTest, BadInputIsNamedAndChangesNothing) {
   frame = good;
   frame.intrinsics.fx = 0.0;
   EXPECT_EQ(mapper_.integrate(frame, state), MapStatus::bad_frame);
+  frame = good;
+  frame.X_BC.linear()(2, 2) = -4e14;
+  EXPECT_EQ(mapper_.integrate(frame, state), MapStatus::bad_frame) << "no rotation";
   core::RobotState lost = state;
+  lost.R_WB *= 2.0;
+  EXPECT_EQ(mapper_.integrate(good, lost), MapStatus::bad_state) << "no rotation";
+  lost = state;
   lost.p_WB.x() = core::kNaN;
   EXPECT_EQ(mapper_.integrate(good, lost), MapStatus::bad_state);
   EXPECT_EQ(mapper_.anchor_support(lost), MapStatus::bad_state);
