@@ -20,11 +20,6 @@ constexpr double kFlightEnds = 0.2;  // share of the flight near the ground at e
 /// The smooth terrain lies above what was seen, most of all beside edges: a point of the leg may be
 /// so far below it without touching the ground [m].
 constexpr double kTerrainAllowance = 12e-3;
-/// Shanks that pass an edge in flight stray so far from the plan [m].
-constexpr double kShankAllowance = 8e-3;
-/// Of the friction. Between the knots the reserve for feedback may shrink to this, or nothing is
-/// left to hold the landing with.
-constexpr double kFrictionShare = 0.95;
 
 // Checks by number; those of motors and joints run hip, knee, ankle.
 constexpr std::size_t kHipTorque = 0;
@@ -160,7 +155,7 @@ class Examiner {
     note(kNormalForce, fz / (chain.total_mass() * model::kGravity), time);
     peaks_.normal_force = std::max(peaks_.normal_force, fz);
     if (fz <= 0.0) return;
-    note(kFriction, 1.0 - std::abs(now.force.x) / (kFrictionShare * model_.config.friction * fz),
+    note(kFriction, 1.0 - std::abs(now.force.x) / (kFrictionShareMax * model_.config.friction * fz),
          time);
     const double pressure = -(now.moment + chain.sole_height * now.force.x) / fz;
     note(kToePressure, (chain.toe - pressure) / chain.toe, time);
@@ -174,8 +169,9 @@ class Examiner {
     const double allowance = in_the_middle ? 0.0 : kTerrainAllowance;
     const auto points = ClearanceLaw::points(model_.dynamics, now.links.pitch);
     for (std::size_t p = 0; p < points.size(); ++p) {
-      const double radius =
-          p < ClearanceLaw::kFootRows ? 0.0 : model_.robot.shank_radius + kShankAllowance;
+      const double radius = p < ClearanceLaw::kFootRows
+                                ? 0.0
+                                : model_.robot.shank_radius + ClearanceLaw::kShankAllowance;
       note_clearance(kClearanceChecks[p],
                      above(now, points[p], ClearanceLaw::look_back(p)) - radius, allowance, time);
     }

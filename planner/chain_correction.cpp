@@ -50,7 +50,7 @@ class StepLimits {
       : model_(model), task_(task), motion_(motion) {
     motors_.limits = motor_limits(model.robot, Reserves{1.0, 1.0, 1.0, 1.0});
     ground_ = ground_rows(model.dynamics.chain(), model.config, 0.0);
-    ground_.friction = model.config.friction;
+    ground_.friction = kFrictionShareMax * model.config.friction;
     ground_.normal_force_min = 0.0;
     motors_.bounds(std::span(lower_).first<MotorRows::kRows>(),
                    std::span(upper_).first<MotorRows::kRows>());
@@ -90,7 +90,8 @@ class StepLimits {
       const double depth =
           task_.terrain.at(ankle.x + points[r].x - ClearanceLaw::look_back(r)).height - ankle.z -
           points[r].z;
-      const double radius = is_foot(r) ? -kContactAllowance : model_.robot.shank_radius;
+      const double radius = is_foot(r) ? -kContactAllowance
+                                       : model_.robot.shank_radius + ClearanceLaw::kShankAllowance;
       excess.terrain[r] = std::max(excess.terrain[r], depth + radius);
     }
   }

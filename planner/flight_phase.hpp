@@ -103,6 +103,9 @@ struct ClearanceLaw {
   static constexpr std::array<double, 3> kShankShares{1.0 / 3.0, 2.0 / 3.0, 1.0};
   /// Rows of the foot: toe and heel. Those of the shank follow.
   static constexpr std::size_t kFootRows = 2;
+  /// Shanks that pass an edge in flight stray so far from the plan: a certified one has that much
+  /// room beside their radius [m].
+  static constexpr double kShankAllowance = 8e-3;
   static constexpr std::size_t kRowCount = kFootRows + kShankShares.size();
   static constexpr int kRows = static_cast<int>(kRowCount);
   model::PlanarDynamics dynamics;

@@ -47,15 +47,6 @@ constexpr int kIterationsInAll = 170;
 /// In the words of the certificate.
 constexpr const char* kShankLimit = "shank clearance";
 
-/// First landing step as a share of the mean one where the shipped rhythm, short steps first, gives
-/// no certified plan: the last steps are then shorter, and less happens between their knots.
-constexpr double kEvenFirstShare = 0.8;
-
-PlannerConfig with_even_landing(PlannerConfig config) {
-  config.landing_first_share = std::max(config.landing_first_share, kEvenFirstShare);
-  return config;
-}
-
 /// A jump to the side or with a turn loads one leg more, slides it sideways and reaches further
 /// with it: it uses so much less of each reserve, and the certificate judges each leg.
 constexpr double kSideShare = 0.94;
@@ -191,7 +182,6 @@ PlanRequest moved_to(PlanRequest request, double distance) {
 
 struct JumpPlanner::Memory {
   PlanarModel straight;  ///< For jumps ahead.
-  PlanarModel even;      ///< The same with nearly equal landing steps.
   PlanarModel sideways;  ///< For the others: what one leg may use more than the other is kept.
   DecisionLayout layout;
   CorrectedSolver chain;
@@ -200,12 +190,12 @@ struct JumpPlanner::Memory {
   Eigen::VectorXd last_by_ipopt;  ///< The same by Ipopt; empty before the first.
   std::string_view obstacle;      ///< Limit that the last refusal is about.
   int iterations = 0;             ///< Of the last plan, all rungs.
+  double cost = 0.0;              ///< Of the last certified solution.
   PlanRung rung = PlanRung::solved;
 
   Memory(const model::RobotParameters& robot, const PlannerConfig& config,
          std::shared_ptr<const JumpLibrary> jumps)
       : straight(robot, config),
-        even(robot, with_even_landing(config)),
         sideways(robot, with_room_for_one_leg(config)),
         layout(config.steps),
         chain(layout),
@@ -215,7 +205,6 @@ struct JumpPlanner::Memory {
   [[nodiscard]] core::Result<core::JumpPlan> climb_down(const Trial& trial);
   /// Prepares one more solve; false when the plan has had its share of iterations.
   [[nodiscard]] bool has_time();
-  [[nodiscard]] core::Result<core::JumpPlan> by_even_landing(const Trial& trial);
   [[nodiscard]] core::Result<core::JumpPlan> by_neighbours(const Trial& trial, std::size_t count);
   [[nodiscard]] core::Result<core::JumpPlan> by_library(const Trial& trial);
   [[nodiscard]] core::Result<core::JumpPlan> finish(const Trial& trial, const SolvedMotion& solved);
@@ -245,6 +234,9 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::finish(const Trial& trial,
   const auto& [model, task, request] = trial;
   const SolveOutcome& outcome = solved.outcome;
   iterations += outcome.iterations;
+  if (getenv("TRACE"))
+    fprintf(stderr, "  rung %d it %d viol %.2g status %d cost %.4f\n", (int)rung,
+            outcome.iterations, outcome.violation, (int)outcome.status, outcome.cost);
   const bool by_chain = request.solver == Solver::chain;
   obstacle = by_chain ? chain.obstacle() : std::string_view{};
   if (!is_acceptable(outcome)) return infeasible(outcome, task, obstacle);
@@ -252,10 +244,11 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::finish(const Trial& trial,
   if (std::optional<Refusal> refusal =
           certify_and_lift(model, task, solved, request.solver, plan)) {
     obstacle = plan.certificate.binding().name;
+    if (getenv("TRACE")) fprintf(stderr, "    cert %s\n", refusal->sentence.c_str());
     return *refusal;
   }
-  // Others start from the shipped rhythm of landing steps.
-  if (by_chain && &model != &even) last = chain.known(task, solved);
+  if (by_chain) last = chain.known(task, solved);
+  cost = outcome.cost;
   plan.iterations = iterations;
   return plan;
 }
@@ -293,20 +286,10 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::climb_down(const Trial& trial)
   }
   if (first) return first;
   const std::string_view first_obstacle = obstacle;
-  if (first.error().reason == Reason::certificate_refused) {
-    if (core::Result<core::JumpPlan> plan = by_even_landing(trial)) return plan;
-  }
   if (core::Result<core::JumpPlan> plan = by_neighbours(trial, kNeighbours)) return plan;
   if (core::Result<core::JumpPlan> plan = by_library(trial)) return plan;
   obstacle = first_obstacle;
   return first;
-}
-
-core::Result<core::JumpPlan> JumpPlanner::Memory::by_even_landing(const Trial& trial) {
-  if (&trial.model != &straight || !has_time()) return no_plan();
-  rung = PlanRung::even_landing;
-  const Trial again{even, trial.task, trial.request};
-  return finish(again, chain.solve(even, trial.task, kinematic_guess(even, trial.task, layout)));
 }
 
 core::Result<core::JumpPlan> JumpPlanner::Memory::by_neighbours(const Trial& trial,
@@ -366,7 +349,6 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::plan_otherwise(const PlanReque
 std::string_view plan_rung_name(PlanRung rung) {
   switch (rung) {
     case PlanRung::solved: return "solved";
-    case PlanRung::even_landing: return "even_landing";
     case PlanRung::neighbour: return "neighbour";
     case PlanRung::library: return "library";
   }
@@ -397,6 +379,10 @@ int JumpPlanner::iterations() const {
 
 PlanRung JumpPlanner::rung() const {
   return memory_->rung;
+}
+
+double JumpPlanner::cost() const {
+  return memory_->cost;
 }
 
 const KnownJump* JumpPlanner::last() const {

@@ -29,10 +29,9 @@ enum class StartGuess : std::uint8_t {
 /// neighbour that was asked for as start guess comes first. Below the last one there is no plan,
 /// and the robot stands.
 enum class PlanRung : std::uint8_t {
-  solved,        ///< From the closed-form guess, or from the last jump.
-  even_landing,  ///< With landing steps of nearly equal length, from the closed-form guess.
-  neighbour,     ///< Solved from a jump of the library close by.
-  library,  ///< A jump of the library as it is, to its own distance; certified for this ground.
+  solved,     ///< From the closed-form guess, or from the last jump.
+  neighbour,  ///< Solved from a jump of the library close by.
+  library,    ///< A jump of the library as it is, to its own distance; certified for this ground.
 };
 [[nodiscard]] std::string_view plan_rung_name(PlanRung rung);
 
@@ -87,6 +86,8 @@ class JumpPlanner {
   [[nodiscard]] int iterations() const;
   /// Of the last plan.
   [[nodiscard]] PlanRung rung() const;
+  /// Objective of the last jump that was solved and certified.
+  [[nodiscard]] double cost() const;
   /// The last jump that was solved by the chain solver and certified; null before the first.
   [[nodiscard]] const KnownJump* last() const;
 

@@ -12,17 +12,17 @@ namespace hopscotch::planner {
 /// What a library holds: every target of the grid that is planned and certified, from each start
 /// state, the edge of the ground where `default_edge` puts it.
 struct LibraryGrid {
-  double distance_from = 0.15;      ///< [m]
-  double distance_to = 0.65;        ///< [m]
-  double distance_step = 0.05;      ///< [m]
-  double height_from = -0.30;       ///< [m]
-  double height_to = 0.25;          ///< [m]
-  double height_step = 0.025;       ///< From standing [m].
-  double other_height_step = 0.05;  ///< From other start states [m].
+  double distance_from = 0.15;       ///< [m]
+  double distance_to = 0.65;         ///< [m]
+  double distance_step = 0.03;       ///< [m]
+  double height_from = -0.30;        ///< [m]
+  double height_to = 0.25;           ///< [m]
+  double height_step = 0.025;        ///< From standing [m].
+  double other_height_step = 0.025;  ///< From other start states [m].
 };
 
 /// Solves all jumps of the grid, those that fail once more from solved neighbours until no more are
-/// found.
+/// found; then looks whether neighbours lead to cheaper ones (docs/decisions/0079).
 /// @param progress Called with the share that is done.
 /// @throws std::invalid_argument if the robot cannot stand in `posture`.
 [[nodiscard]] JumpLibrary compile_library(const PlannerConfig& config,

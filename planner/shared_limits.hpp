@@ -64,6 +64,10 @@ struct MotorRows {
   }
 };
 
+/// Of the friction, as a certified plan may use it at any instant. Between the knots the reserve
+/// for feedback may shrink to this, or nothing is left to hold the landing with.
+inline constexpr double kFrictionShareMax = 0.95;
+
 /// Eqs. (9h)-(9j) with the ground reaction of Newton and Euler: normal force, friction and the line
 /// foot in its physical sense, all divided by the robot's weight.
 struct GroundRows {

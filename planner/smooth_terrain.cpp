@@ -15,6 +15,17 @@ std::size_t clamped(int sample) {
   return static_cast<std::size_t>(std::clamp(sample, 0, TerrainProfile::kSamples - 1));
 }
 
+/// In samples from the first one.
+double place_of(double x) {
+  return std::clamp((x - TerrainProfile::kStart) / TerrainProfile::kStep, 0.0,
+                    static_cast<double>(TerrainProfile::kSamples - 1));
+}
+
+/// The sample that the spline's piece at a place begins with.
+int span_of(double place) {
+  return std::min(static_cast<int>(place), TerrainProfile::kSamples - 2);
+}
+
 /// A B-spline looks two samples to each side, so the ground of a sole is levelled so far.
 void level(const SolePlace& place, Samples& control) {
   for (int i = 0; i < TerrainProfile::kSamples; ++i) {
@@ -63,9 +74,8 @@ core::Result<SmoothTerrain> SmoothTerrain::from_profile(const TerrainProfile& pr
 }
 
 TerrainPoint SmoothTerrain::at(double x) const {
-  const double place = std::clamp((x - TerrainProfile::kStart) / TerrainProfile::kStep, 0.0,
-                                  static_cast<double>(TerrainProfile::kSamples - 1));
-  const int i = std::min(static_cast<int>(place), TerrainProfile::kSamples - 2);
+  const double place = place_of(x);
+  const int i = span_of(place);
   const double u = place - i;
   const double p0 = control_[clamped(i - 1)];
   const double p1 = control_[clamped(i)];
@@ -82,6 +92,13 @@ TerrainPoint SmoothTerrain::at(double x) const {
       (2.0 * h);
   point.curvature = (r * p0 + (3.0 * u - 2.0) * p1 + (3.0 * r - 2.0) * p2 + u * p3) / (h * h);
   return point;
+}
+
+double SmoothTerrain::height_bound(double from, double to) const {
+  const std::size_t first = clamped(span_of(place_of(from)) - 1);
+  const std::size_t last = clamped(span_of(place_of(to)) + 2);
+  return *std::max_element(control_.begin() + static_cast<std::ptrdiff_t>(first),
+                           control_.begin() + static_cast<std::ptrdiff_t>(last) + 1);
 }
 
 }  // namespace hopscotch::planner

@@ -38,6 +38,9 @@ class SmoothTerrain {
   /// Constant beyond the ends of the profile.
   [[nodiscard]] TerrainPoint at(double x) const;
 
+  /// Nothing between these places is higher than this: the spline stays below its control points.
+  [[nodiscard]] double height_bound(double from, double to) const;
+
   template <typename T>
   [[nodiscard]] T height(const T& x) const {
     const TerrainPoint point = at(value_of(x));

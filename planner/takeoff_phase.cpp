@@ -16,36 +16,45 @@ model::PlanarVector<double> knee_at(const PlanarModel& model, double pitch) {
   return model.dynamics.knee(model::LinkArray<double>{0.0, pitch, 0.0, 0.0});
 }
 
+/// `shank_room` with the knee at `knee`, seen from the ankle.
+double room_around(const SmoothTerrain& terrain, const model::PlanarVector<double>& ankle,
+                   const model::PlanarVector<double>& knee, double radius) {
+  constexpr int kPoints = 12;  // along the shank: 2 cm apart
+  constexpr int kAround = 3;   // to each side of a point
+  constexpr int kFirst = 3;    // below it is the foot, which stands
+  double room = kUnbounded;
+  for (int i = kFirst; i <= kPoints; ++i) {
+    const double share = static_cast<double>(i) / kPoints;
+    const double x = ankle.x + share * knee.x - SmoothTerrain::kEdgeDoubt;
+    const double z = ankle.z + share * knee.z;
+    // Most points are far above all the ground around them.
+    if (z - radius - terrain.height_bound(x - radius, x + radius) >= room) continue;
+    for (int j = -kAround; j <= kAround; ++j) {
+      const double aside = radius * j / kAround;
+      const double lowest = z - std::sqrt(radius * radius - aside * aside);
+      room = std::min(room, lowest - terrain.at(x + aside).height);
+    }
+  }
+  return room;
+}
+
 }  // namespace
 
 double shank_room(const PlanarModel& model, const SmoothTerrain& terrain,
                   const model::PlanarVector<double>& ankle, double pitch, double radius) {
-  constexpr int kPoints = 12;  // along the shank: 2 cm apart
-  constexpr int kAround = 3;   // to each side of a point
-  constexpr int kFirst = 3;    // below it is the foot, which stands
-  const model::PlanarVector<double> knee = knee_at(model, pitch);
-  double room = kUnbounded;
-  for (int i = kFirst; i <= kPoints; ++i) {
-    const double share = static_cast<double>(i) / kPoints;
-    for (int j = -kAround; j <= kAround; ++j) {
-      const double aside = radius * j / kAround;
-      const double lowest = ankle.z + share * knee.z - std::sqrt(radius * radius - aside * aside);
-      const double x = ankle.x + share * knee.x + aside - SmoothTerrain::kEdgeDoubt;
-      room = std::min(room, lowest - terrain.at(x).height);
-    }
-  }
-  return room;
+  return room_around(terrain, ankle, knee_at(model, pitch), radius);
 }
 
 ShankRange shank_range(const PlanarModel& model, const SmoothTerrain& terrain,
                        const model::PlanarVector<double>& ankle) {
   constexpr double kStep = 0.005;  // [rad]: 1 mm at the knee
   const double limit = model.config.shank_pitch_max;
+  const double radius = model.robot.shank_radius + kShankRoom;
   const auto is_clear = [&](double pitch) {
     const model::PlanarVector<double> knee = knee_at(model, pitch);
     const double ground = terrain.at(ankle.x + knee.x - SmoothTerrain::kEdgeDoubt).height;
     return ankle.z + knee.z >= ground + model.config.knee_clearance &&
-           shank_room(model, terrain, ankle, pitch, model.robot.shank_radius + kShankRoom) >= 0.0;
+           room_around(terrain, ankle, knee, radius) >= 0.0;
   };
   ShankRange range;
   while (range.lower - kStep > -limit && is_clear(range.lower - kStep)) range.lower -= kStep;

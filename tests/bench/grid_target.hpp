@@ -47,14 +47,15 @@ struct GridProblems {
     return {model.config.iterations_max, model.config.tolerance};
   }
 
-  [[nodiscard]] SolveOutcome by_ipopt(const PlanarTask& task, const Eigen::VectorXd& start) const {
+  [[nodiscard]] SolveOutcome by_ipopt(const PlanarTask& task, const Eigen::VectorXd& start,
+                                      const SolveOptions& options) const {
     BlockList blocks;
     add_takeoff(model, task, layout, blocks);
     add_flight(model, task, layout, blocks);
     add_landing(model, task, layout, blocks);
     return solve_with_ipopt({layout.size(), std::move(blocks)},
                             decision_bounds(model, task, layout), decision_sizes(layout), {start},
-                            options());
+                            options);
   }
 
   model::RobotParameters robot;

@@ -51,7 +51,8 @@ bool is_reachable(const GridProblems& problems, const GridTarget& target) {
   constexpr std::array<std::array<double, 2>, 5> kStarts{
       {{0.0, 0.0}, {-0.05, 0.0}, {0.05, 0.0}, {0.0, 0.05}, {0.0, -0.05}}};
   for (const auto& [ahead, up] : kStarts) {
-    const SolveOutcome outcome = problems.by_ipopt(*task, guess_beside(problems, *task, ahead, up));
+    const SolveOutcome outcome =
+        problems.by_ipopt(*task, guess_beside(problems, *task, ahead, up), problems.options());
     const bool solved = outcome.status == SolveStatus::solved && outcome.violation < 1e-3;
     if (solved && is_certified(problems, *task, outcome)) return true;
     if (outcome.violation > kHopeless) return false;

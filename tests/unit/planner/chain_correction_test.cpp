@@ -120,12 +120,13 @@ TEST_P(ExactJumps, HoldBetweenTheKnots) {
   const auto plan = planner.plan(request(GetParam().distance, GetParam().height));
   ASSERT_TRUE(plan) << plan.error().text();
   EXPECT_LT(plan->certificate.dense_max_violation, 1e-3);
+  EXPECT_GE(plan->certificate.binding().margin, -1e-3) << plan->certificate.binding().name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Some, ExactJumps,
                          testing::Values(Jump{0.25, 0.0}, Jump{0.40, 0.0}, Jump{0.50, 0.0},
                                          Jump{0.35, 0.15}, Jump{0.30, 0.20}, Jump{0.40, -0.10},
-                                         Jump{0.45, -0.20}));
+                                         Jump{0.45, -0.20}, Jump{0.55, 0.10}, Jump{0.384, -0.30}));
 
 }  // namespace
 }  // namespace hopscotch::planner

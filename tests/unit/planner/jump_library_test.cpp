@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <random>
 #include <stdexcept>
 
 #include "planner/chain_layout.hpp"
+#include "planner/jump_planner.hpp"
 #include "planner/library_compiler.hpp"
 #include "tests/unit/planner/planner_fixture.hpp"
 
@@ -14,6 +16,7 @@ namespace hopscotch::planner {
 namespace {
 
 using testing_support::hector;
+using testing_support::request;
 using testing_support::shipped_config;
 using testing_support::shipped_model;
 using testing_support::shipped_posture;
@@ -143,6 +146,39 @@ TEST(CompileLibrary, HoldsWhatIsPlannedOfTheGrid) {
     EXPECT_TRUE(jump.solution.x.allFinite());
     EXPECT_GT(jump.solution.slot_multipliers.cwiseAbs().maxCoeff(), 0.0);
   }
+}
+
+/// Twelve targets from each start state, some with several local minima.
+LibraryGrid downhill_grid() {
+  LibraryGrid grid;
+  grid.distance_from = 0.36;
+  grid.distance_to = 0.44;
+  grid.distance_step = 0.04;
+  grid.height_from = -0.15;
+  grid.height_to = 0.0;
+  grid.height_step = grid.other_height_step = 0.05;
+  return grid;
+}
+
+TEST(CompileLibrary, KeepsTheCheapestOfSeveralLocalMinima) {
+  constexpr double kSame = 1e-3;  // of costs, relative
+  const auto library = std::make_shared<const JumpLibrary>(compile_library(
+      shipped_config(), hector(), shipped_posture(), downhill_grid(), [](double) {}));
+  ASSERT_EQ(library->jumps().size(), 36U);
+  JumpPlanner planner(shipped_config(), hector(), library);
+  int cheaper = 0;
+  for (const double distance : {0.36, 0.40, 0.44}) {
+    for (const double height : {-0.15, -0.10, -0.05, 0.0}) {
+      PlanRequest wanted = request(distance, height);
+      ASSERT_TRUE(planner.plan(wanted)) << distance << ' ' << height;
+      const double from_library = planner.cost();
+      wanted.guess = StartGuess::kinematic;
+      ASSERT_TRUE(planner.plan(wanted)) << distance << ' ' << height;
+      EXPECT_LE(from_library, (1.0 + kSame) * planner.cost()) << distance << ' ' << height;
+      if (from_library < (1.0 - kSame) * planner.cost()) ++cheaper;
+    }
+  }
+  EXPECT_GT(cheaper, 0) << "the grid has only one minimum for each target: choose another";
 }
 
 }  // namespace

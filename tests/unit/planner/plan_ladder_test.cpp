@@ -60,15 +60,6 @@ TEST_F(PlanLadder, ANeighbourFromTheLibraryIsTheStartWhereThereIsOne) {
   EXPECT_EQ(planner.rung(), PlanRung::solved);  // no jump of the library is like that
 }
 
-TEST_F(PlanLadder, WhatTheCertificateRefusesIsSolvedWithEvenLandingSteps) {
-  JumpPlanner planner(shipped_config(), hector());
-  const core::Result<core::JumpPlan> plan = planner.plan(request(0.55, 0.10));
-  ASSERT_TRUE(plan) << plan.error().text();
-  EXPECT_EQ(planner.rung(), PlanRung::even_landing);
-  EXPECT_LT(plan->certificate.dense_max_violation, 1e-3);
-  EXPECT_EQ(planner.last(), nullptr);  // nothing that others should start from
-}
-
 TEST_F(PlanLadder, WhatCannotBeSolvedFromTheGuessIsSolvedFromANeighbour) {
   JumpPlanner alone(with_iterations(kFewIterations), hector());
   ASSERT_FALSE(alone.plan(request(0.41, 0.0)));

@@ -38,6 +38,19 @@ TEST(SmoothTerrain, HasContinuousDerivativesThatMatchDifferences) {
   }
 }
 
+TEST(SmoothTerrain, StaysBelowItsBound) {
+  const SmoothTerrain terrain = step();
+  for (double from = -0.4; from < 1.7; from += 0.013) {
+    for (const double length : {0.0, 0.004, 0.031, 0.2}) {
+      const double bound = terrain.height_bound(from, from + length);
+      for (double x = from; x <= from + length; x += 0.001) {
+        EXPECT_LE(terrain.at(x).height, bound + 1e-12) << x;
+      }
+    }
+  }
+  EXPECT_NEAR(terrain.height_bound(kStart.rear, kStart.front), 0.0, 1e-12);
+}
+
 TEST(SmoothTerrain, IsFlatUnderTheSoles) {
   const SmoothTerrain terrain = step();
   for (double x = kStart.rear; x <= kStart.front; x += 0.005) {

@@ -57,6 +57,30 @@ TEST_F(TakeoffPhase, AnEdgeBetweenAnkleAndKneeLimitsTheShankToo) {
   EXPECT_GT(shank_room(model_, drop.terrain, ankle, range.lower, model_.robot.shank_radius), 0.0);
 }
 
+TEST_F(TakeoffPhase, NoPointOfAShankIsNearerToTheGroundThanItsRoom) {
+  constexpr double kSole = 0.04;            // [m]
+  constexpr double kRadius = 0.02;          // [m]
+  constexpr double kFoot = 0.25;            // share of the shank that is no part of the question
+  constexpr double kBetweenPoints = 0.002;  // what is missed between the points looked at [m]
+  const PlanarTask drop = testing_support::task(model_, 0.30, -0.15);
+  const model::PlanarVector<double> ankle{0.24, -0.15 + kSole};
+  for (double pitch = -1.0; pitch <= 1.0; pitch += 0.05) {
+    const model::PlanarVector<double> knee =
+        model_.dynamics.knee(model::LinkArray<double>{0.0, pitch, 0.0, 0.0});
+    double nearest = kUnbounded;
+    for (double share = kFoot; share <= 1.0; share += 0.01) {
+      for (double aside = -kRadius; aside <= kRadius; aside += 0.1 * kRadius) {
+        const double x = ankle.x + share * knee.x + aside - SmoothTerrain::kEdgeDoubt;
+        const double below = std::sqrt(std::max(0.0, kRadius * kRadius - aside * aside));
+        nearest = std::min(nearest, ankle.z + share * knee.z - below - drop.terrain.at(x).height);
+      }
+    }
+    const double room = shank_room(model_, drop.terrain, ankle, pitch, kRadius);
+    EXPECT_GE(room, nearest - 1e-9) << pitch;
+    EXPECT_LE(room, nearest + 0.05 * std::abs(pitch) + kBetweenPoints) << pitch;
+  }
+}
+
 TEST_F(TakeoffPhase, AShankOnOpenGroundHasTheRoomOfItsLowestPoint) {
   constexpr double kRadius = 0.015;  // [m]
   const double room = shank_room(model_, task_.terrain, {0.0, 0.04}, 0.0, kRadius);
