@@ -20,6 +20,9 @@ constexpr double kTerrainScale = 0.1;       // of clearances among defects [m]
 constexpr double kSoleMargin = 1e-3;        // kept from the terrain [m]
 constexpr double kShankMargin = 2.5e-3;     // the same; it swings past edges between two looks [m]
 constexpr double kContactAllowance = 2e-3;  // sole and terrain touch [m]
+/// Of the clearance that knots ask of the feet, kept between them: a toe rises past a riser in less
+/// than a step.
+constexpr double kFootShare = 0.5;
 /// Longest step of the integration; its error is far below what is looked for [s].
 constexpr double kStepMax = 4e-3;
 constexpr double kRateScale = 21.0;  // of the errors of rates [rad/s]
@@ -85,14 +88,15 @@ class StepLimits {
     const model::PlanarVector<double> ankle{
         motion_.liftoff_com.x + v.x * t - com.x,
         motion_.liftoff_com.z + v.z * t - 0.5 * model::kGravity * t * t - com.z};
+    const double share = t / (motion_.touchdown_time - motion_.liftoff_time);
+    const double foot = kFootShare * clearance_profile(task_.clearance, share) - kContactAllowance;
+    const double shank = model_.robot.shank_radius + ClearanceLaw::kShankAllowance;
     const auto points = ClearanceLaw::points(model_.dynamics, a);
     for (std::size_t r = 0; r < points.size(); ++r) {
       const double depth =
           task_.terrain.at(ankle.x + points[r].x - ClearanceLaw::look_back(r)).height - ankle.z -
           points[r].z;
-      const double radius = is_foot(r) ? -kContactAllowance
-                                       : model_.robot.shank_radius + ClearanceLaw::kShankAllowance;
-      excess.terrain[r] = std::max(excess.terrain[r], depth + radius);
+      excess.terrain[r] = std::max(excess.terrain[r], depth + (is_foot(r) ? foot : shank));
     }
   }
 

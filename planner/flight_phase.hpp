@@ -139,10 +139,13 @@ struct ClearanceLaw {
     }
     return T(0.0);
   }
-  /// How far behind the point of a row its terrain is taken [m]: shanks follow over an edge that
-  /// toes and heels have left behind.
+  /// How far behind the point of a row its terrain is taken [m]. An edge lies anywhere around the
+  /// sample that tells of it: toes meet it half a sample earlier, heels leave it half a sample
+  /// later. Shanks follow over an edge that both have left behind.
   static constexpr double look_back(std::size_t row) {
-    return row < kFootRows ? 0.0 : SmoothTerrain::kEdgeDoubt;
+    constexpr double kHalfSample = 0.5 * core::TerrainProfile::kStep;
+    if (row == 0) return -kHalfSample;
+    return row < kFootRows ? kHalfSample : SmoothTerrain::kEdgeDoubt;
   }
   void bounds(std::span<double> lower, std::span<double> upper) const {
     std::fill_n(lower.begin(), kFootRows, foot_clearance);

