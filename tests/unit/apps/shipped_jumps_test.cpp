@@ -90,7 +90,7 @@ TEST(ShippedJumps, ABrokenFileIsNamed) {
 /// for the soles beside that edge. A riser right before the toes is the planner's to refuse.
 bool footstep_allows(const model::RobotParameters& robot, const planner::StepRequest& step) {
   constexpr double kSoleMargin = 0.035;   // [m]
-  constexpr double kRiserMargin = 0.075;  // [m]
+  constexpr double kRiserMargin = 0.11;  // [m]
   const double half_sole = 0.5 * (robot.toe + robot.heel);
   return step.distance - step.edge >= half_sole + kSoleMargin &&
          (step.height < 0.0 || step.edge >= half_sole + kRiserMargin) &&
