@@ -89,7 +89,7 @@ TEST(ShippedJumps, ABrokenFileIsNamed) {
 /// Whether footstep lets a robot that stands `edge` behind a change of height jump there, with room
 /// for the soles beside that edge. A riser right before the toes is the planner's to refuse.
 bool footstep_allows(const model::RobotParameters& robot, const planner::StepRequest& step) {
-  constexpr double kSoleMargin = 0.035;   // [m]
+  constexpr double kSoleMargin = 0.035;  // [m]
   constexpr double kRiserMargin = 0.11;  // [m]
   const double half_sole = 0.5 * (robot.toe + robot.heel);
   return step.distance - step.edge >= half_sole + kSoleMargin &&

@@ -162,8 +162,8 @@ LibraryGrid uphill_grid() {
 
 TEST(CompileLibrary, KeepsTheCheapestOfSeveralLocalMinima) {
   constexpr double kSame = 1e-3;  // of costs, relative
-  const auto library = std::make_shared<const JumpLibrary>(compile_library(
-      shipped_config(), hector(), shipped_posture(), uphill_grid(), [](double) {}));
+  const auto library = std::make_shared<const JumpLibrary>(
+      compile_library(shipped_config(), hector(), shipped_posture(), uphill_grid(), [](double) {}));
   ASSERT_EQ(library->jumps().size(), 12U);
   JumpPlanner planner(shipped_config(), hector(), library);
   int cheaper = 0;
