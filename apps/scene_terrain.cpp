@@ -180,9 +180,8 @@ perception::PointCloud cloud_of(const core::DepthFrame& frame,
     for (int u = 0; u < lens.width; ++u) {
       const float z = depth[static_cast<std::size_t>(v * lens.width + u)];
       const double scale = z > 0.0F ? static_cast<double>(z) : core::kNaN;
-      cloud.points.push_back(
-          (scale * Eigen::Vector3d((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1.0))
-              .cast<float>());
+      const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1.0);
+      cloud.points.emplace_back((scale * ray).cast<float>());
     }
   }
   return cloud;
