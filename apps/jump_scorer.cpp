@@ -66,6 +66,8 @@ void JumpScorer::follow(const sim::PlantTruth& truth, const core::RobotState& us
   jump.peak = {peaks_.torque_ratio, peaks_.speed_ratio, peaks_.power_ratio, peaks_.normal_force};
   const bool contact = truth.state.contact[0] || truth.state.contact[1];
   const bool leaving = core::is_pushing_off(phase_) || phase_ == RobotPhase::flight;
+  // A crouch that starts fast may unload the soles: that is no lift-off.
+  if (contact && core::is_pushing_off(phase_)) liftoff_.reset();
   if (!contact && !liftoff_ && leaving) {
     liftoff_ = truth.state.stamp;
     const Eigen::Vector3d v_WG = model::composite_body(robot_, truth.state).v_WG;
