@@ -300,7 +300,7 @@ core::JointCommand ControlTick::next_command(const core::RobotState& state) noex
   const bool on_ground = phase() == RobotPhase::landing || core::is_standing(phase());
   if (on_ground && !was_hopping_) {
     follow_feet(state);
-    tilt_.observe(robot_, state, elapsed);
+    tilt_.observe(robot_, state, status_.wrenches, elapsed);
   }
 
   core::JointCommand command;

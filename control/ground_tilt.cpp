@@ -29,6 +29,16 @@ double pitch_of(const Eigen::Isometry3d& X_WF) {
   return -std::asin(std::clamp(X_WF.linear()(2, 0), -1.0, 1.0));
 }
 
+/// The pressure asked for lies well within the sole: one that has risen about toe or heel comes
+/// down under it.
+bool presses_flat(const Eigen::Isometry3d& X_WF, const core::Wrench& asked) {
+  constexpr double kWithin = 0.05;  // of the sole's centre; heel and toe are 0.075 away [m]
+  constexpr double kLoaded = 20.0;  // [N]
+  const double load = asked.force.z();
+  if (load < kLoaded) return false;
+  return std::abs(asked.moment.dot(X_WF.linear().col(1))) <= kWithin * load;
+}
+
 /// Of a sole about its lateral axis, + toes going down [rad/s].
 double pitch_rate(const core::RobotState& state, core::Leg leg) {
   return state.w_WB.dot(state.R_WB.col(1)) + state.dq[joint_index(leg, Joint::hip_pitch)] +
@@ -50,7 +60,14 @@ double tilt_of(const core::LandingTarget& target) noexcept {
 }
 
 void GroundTilt::observe(const model::RobotParameters& robot, const core::RobotState& state,
-                         double dt) noexcept {
+                         const core::ContactWrenches& asked, double dt) noexcept {
+  const auto soles = model::sole_poses(robot, state);
+  if (!presses_flat(soles[0], asked[0]) || !presses_flat(soles[1], asked[1])) return;
+  look_at_soles(robot, state, dt);
+}
+
+void GroundTilt::look_at_soles(const model::RobotParameters& robot, const core::RobotState& state,
+                               double dt) noexcept {
   constexpr double kRest = 0.3;       // slower soles do not turn [rad/s]
   constexpr double kTime = 0.04;      // of the low-pass: the trunk still swings [s]
   constexpr double kDifferent = 0.1;  // one sole stands on something else [rad]
@@ -69,7 +86,7 @@ void GroundTilt::observe(const model::RobotParameters& robot, const core::RobotS
 void GroundTilt::begin_on(const model::RobotParameters& robot,
                           const core::RobotState& state) noexcept {
   constexpr double kLong = 1.0;  // the low-pass has nothing to remember [s]
-  observe(robot, state, kLong);
+  look_at_soles(robot, state, kLong);
 }
 
 double GroundTilt::under() const noexcept {

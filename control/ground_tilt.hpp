@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/contact_wrenches.hpp"
 #include "core/landing_target.hpp"
 #include "core/robot_state.hpp"
 #include "model/robot_parameters.hpp"
@@ -24,10 +25,11 @@ class GroundTilt {
   void stay() noexcept { ahead_ = under_; }
   /// Touchdown: what lay ahead is under the soles now.
   void land() noexcept { under_ = ahead_; }
-  /// Soles that bear load and do not turn lie on the ground: they tell how it slopes.
-  /// @param dt Since the last call [s].
+  /// Soles that bear load and do not turn lie on the ground: they tell how it slopes. Those that
+  /// are asked to push near toe or heel may have risen about it, and tell nothing.
+  /// @param asked What the controller asks of the ground. @param dt Since the last call [s].
   void observe(const model::RobotParameters& robot, const core::RobotState& state,
-               double dt) noexcept;
+               const core::ContactWrenches& asked, double dt) noexcept;
 
   /// Where the feet stand, or stood last.
   [[nodiscard]] double under() const noexcept;
@@ -35,6 +37,9 @@ class GroundTilt {
   [[nodiscard]] double in_flight(double flown) const noexcept;
 
  private:
+  void look_at_soles(const model::RobotParameters& robot, const core::RobotState& state,
+                     double dt) noexcept;
+
   double under_ = 0.0;
   double ahead_ = 0.0;
 };

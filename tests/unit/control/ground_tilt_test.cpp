@@ -46,10 +46,21 @@ class GroundTiltTest : public testing::ControlTickFixture {
   void stand_on(double slope, double time) {
     core::JointVector level = state_.q;
     tilt_soles(-slope, state_.q);
-    for (double t = 0.0; t < time; t += kTick) tilt_.observe(robot_, state_, kTick);
+    for (double t = 0.0; t < time; t += kTick) tilt_.observe(robot_, state_, asked_, kTick);
     state_.q = level;
   }
+  /// Both soles are to push so much [N], so far ahead of their centres [m].
+  void ask(double load, double ahead) {
+    for (core::Wrench& wrench : asked_) {
+      wrench.force = {0.0, 0.0, load};
+      wrench.moment = {0.0, -ahead * load, 0.0};
+    }
+  }
+
+  void SetUp() override { ask(70.0, 0.01); }
+
   GroundTilt tilt_;
+  core::ContactWrenches asked_;
 };
 
 TEST_F(GroundTiltTest, IsWhatSolesAtRestShow) {
@@ -75,6 +86,20 @@ TEST_F(GroundTiltTest, ASoleThatTurnsOrHangsOrStandsOnAnEdgeShowsNothing) {
   state_.contact = {true, true};
   stand_on(0.4, 0.3);
   EXPECT_EQ(tilt_.under(), 0.0);
+}
+
+TEST_F(GroundTiltTest, SolesThatPushAtToeOrHeelMayHaveRisenAboutIt) {
+  for (const double ahead : {0.065, -0.065}) {
+    ask(70.0, ahead);
+    stand_on(0.1, 0.3);
+    EXPECT_EQ(tilt_.under(), 0.0) << ahead;
+  }
+  ask(10.0, 0.0);  // hardly on the ground
+  stand_on(0.1, 0.3);
+  EXPECT_EQ(tilt_.under(), 0.0);
+  ask(70.0, 0.03);
+  stand_on(0.1, 0.3);
+  EXPECT_NEAR(tilt_.under(), -0.1, 1e-3);
 }
 
 TEST_F(GroundTiltTest, TurnsInFlightFromOneGroundToTheNext) {
