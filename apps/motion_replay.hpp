@@ -3,13 +3,13 @@
 #include <optional>
 
 #include "apps/program_config.hpp"
+#include "apps/slope_planner.hpp"
 #include "control/state_estimator.hpp"
 #include "core/jump_plan.hpp"
 #include "core/robot_state.hpp"
 #include "core/sensor_readings.hpp"
 #include "model/robot_parameters.hpp"
 #include "msgs/messages.hpp"
-#include "planner/jump_planner.hpp"
 
 namespace hopscotch::apps {
 
@@ -41,7 +41,7 @@ class MotionReplay {
   const model::RobotParameters& robot_;
   std::optional<control::StateEstimator> estimator_;  ///< Until the robot is put down: none.
   control::ContactExpectation expected_ = control::ContactExpectation::support;
-  planner::JumpPlanner planner_;
+  SlopePlanner planner_;
   std::optional<core::RobotState> rest_;  ///< The stance of the last question.
   Agreement states_;
   Agreement plans_;

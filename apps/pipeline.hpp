@@ -8,6 +8,7 @@
 
 #include "apps/operator_desk.hpp"
 #include "apps/program_config.hpp"
+#include "apps/slope_planner.hpp"
 #include "apps/stage.hpp"
 #include "apps/state_history.hpp"
 #include "control/control_tick.hpp"
@@ -27,7 +28,6 @@
 #include "model/robot_parameters.hpp"
 #include "perception/occupancy.hpp"
 #include "perception/terrain_mapper.hpp"
-#include "planner/jump_planner.hpp"
 
 namespace hopscotch::apps {
 
@@ -207,7 +207,7 @@ class Pipeline {
   perception::OccupancyMemory volume_;
   footstep::HeightDoubt doubt_;
   footstep::LandingSelector selector_;
-  planner::JumpPlanner planner_;
+  SlopePlanner planner_;
   control::WrenchMpc mpc_;
   std::optional<control::ControlTick> control_;  // starts with the first state
 

@@ -7,8 +7,8 @@
 
 #include "apps/lockstep_run.hpp"
 #include "apps/program_config.hpp"
+#include "apps/slope_planner.hpp"
 #include "footstep/landing_selector.hpp"
-#include "planner/jump_planner.hpp"
 
 namespace hopscotch::apps {
 
@@ -31,7 +31,7 @@ class ProposalDesk {
 
   ProgramConfig config_;
   footstep::LandingSelector selector_;
-  planner::JumpPlanner planner_;
+  SlopePlanner planner_;
   std::mutex one_at_a_time_;  ///< Planner and selector have one user.
   std::mutex mutex_;
   std::condition_variable handed_over_;

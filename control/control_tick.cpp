@@ -102,7 +102,7 @@ void ControlTick::begin_next(const core::RobotState& state) noexcept {
   const double before = planned_heading(robot_, plan_.knots[plan_.knot_count - 1]);
   plan_ = next_;
   has_next_ = false;
-  tilt_.begin(tilt_of(plan_.target));
+  tilt_.begin(slope_ahead(plan_.target));
   start_ = state.stamp;
   const auto soles = model::sole_poses(robot_, state);
   // What the last landing turned too far is turned back, so that headings do not add up.
@@ -119,9 +119,8 @@ void ControlTick::begin_next(const core::RobotState& state) noexcept {
 
 /// From the present motion to a stand on the present soles.
 void ControlTick::settle(const core::RobotState& state, double duration) noexcept {
-  // The soles' tilt comes on top of any plan.
-  core::RobotState level = state;
-  tilt_soles(-tilt_.under(), level.q);
+  // The ground's slope comes on top of any plan.
+  const core::RobotState level = on_level_ground(robot_, state, tilt_.under());
   make_settle_plan(robot_, level, stand_, duration, plan_);
   start_ = state.stamp;
   placement_.takeoff =
@@ -236,8 +235,7 @@ void ControlTick::hop_if_it_must(const core::RobotState& state) noexcept {
   const bool loaded = state.contact[0] || state.contact[1];
   if (!on_ground || supervisor_.is_hopping() || !loaded) return;
   if (state.stamp.since(touchdown_) < hop.wait || !must_hop(hop, robot_, state)) return;
-  core::RobotState level = state;
-  tilt_soles(-tilt_.under(), level.q);
+  const core::RobotState level = on_level_ground(robot_, state, tilt_.under());
   if (!make_recovery_hop(hop, robot_, level, stand_, hop_plan_) || !supervisor_.hop()) return;
   has_next_ = false;
   tilt_.stay();
@@ -343,7 +341,9 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
   if (phase() == RobotPhase::flight && time >= plan_.touchdown_time) command.dq.setZero();
   command.kp << scale * config_.gains.kp, scale * config_.gains.kp;
   command.kd << scale * config_.gains.kd, scale * config_.gains.kd;
-  if (phase() != RobotPhase::flight) return tilt_soles(tilt_.under(), command.q);
+  if (phase() != RobotPhase::flight) {
+    return lay_soles(robot_, planned.rpy.y(), tilt_.under(), command.q);
+  }
   const double body_time = time - config_.actuation_delay;
   if (is_falling_) {
     keep_soles(config_.gains, state, sample_plan(plan_, body_time), command.q);
@@ -351,8 +351,9 @@ void ControlTick::set_joint_targets(const core::RobotState& state,
     aim_legs(config_.gains, robot_, state, {plan_, body_time}, command.q);
   }
   const double flight = plan_.touchdown_time - plan_.liftoff_time;
-  tilt_soles(is_falling_ ? tilt_.under() : tilt_.in_flight((time - plan_.liftoff_time) / flight),
-             command.q);
+  const GroundSlope slope =
+      is_falling_ ? tilt_.under() : tilt_.in_flight((time - plan_.liftoff_time) / flight);
+  lay_soles(robot_, model::rpy_from_rotation(state.R_WB).y(), slope, command.q);
 }
 
 ContactExpectation ControlTick::expected_contact() const noexcept {

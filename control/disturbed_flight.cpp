@@ -151,13 +151,14 @@ void spare_hip_stops(const model::RobotParameters& robot, core::JointVector& q) 
 
 }  // namespace
 
-void stretch_legs(const model::RobotParameters& robot, double pitch, const Stretch& stretch,
-                  core::JointVector& q, core::JointVector& dq) noexcept {
+void stretch_each_leg(const model::RobotParameters& robot, double pitch,
+                      const std::array<Stretch, core::kLegs>& stretches, core::JointVector& q,
+                      core::JointVector& dq) noexcept {
   constexpr double kStraightest = -0.5;  // of the knee: its range ends at -0.26 [rad]
-  if (stretch.by == 0.0 && stretch.rate == 0.0) return;
   const double a = robot.thigh_length();
   const double b = robot.shank_length();
   for (const core::Leg leg : core::kAllLegs) {
+    const Stretch& stretch = stretches[core::index(leg)];
     double& hip = q[joint_index(leg, Joint::hip_pitch)];
     double& knee = q[joint_index(leg, Joint::knee)];
     const Reach before = reach_of(a, b, pitch + hip, knee);
@@ -180,6 +181,12 @@ void stretch_legs(const model::RobotParameters& robot, double pitch, const Stret
     dq[joint_index(leg, Joint::hip_pitch)] += turning;
     dq[joint_index(leg, Joint::knee)] += opening;
   }
+}
+
+void stretch_legs(const model::RobotParameters& robot, double pitch, const Stretch& stretch,
+                  core::JointVector& q, core::JointVector& dq) noexcept {
+  if (stretch.by == 0.0 && stretch.rate == 0.0) return;
+  stretch_each_leg(robot, pitch, {stretch, stretch}, q, dq);
 }
 
 void keep_soles(const JointGains& gains, const core::RobotState& state,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "control/control_config.hpp"
 #include "core/jump_plan.hpp"
 #include "core/robot_state.hpp"
@@ -52,5 +54,9 @@ struct Stretch {
 /// @param pitch Of the trunk [rad].
 void stretch_legs(const model::RobotParameters& robot, double pitch, const Stretch& stretch,
                   core::JointVector& q, core::JointVector& dq) noexcept;
+/// The same of each leg by its own measure.
+void stretch_each_leg(const model::RobotParameters& robot, double pitch,
+                      const std::array<Stretch, core::kLegs>& stretches, core::JointVector& q,
+                      core::JointVector& dq) noexcept;
 
 }  // namespace hopscotch::control

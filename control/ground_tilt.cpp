@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "control/disturbed_flight.hpp"
 #include "model/kinematics.hpp"
 
 namespace hopscotch::control {
@@ -20,13 +21,16 @@ constexpr double kSure = 0.025;
 /// Steeper ground is no landing place; a foot that stands so lies on an edge [rad].
 constexpr double kSteepest = 0.20;
 
-double beyond_scatter(double tilt) {
-  const double share = (std::abs(tilt) - kScatter) / (kSure - kScatter);
-  return tilt * std::clamp(share, 0.0, 1.0);
-}
-
 double pitch_of(const Eigen::Isometry3d& X_WF) {
   return -std::asin(std::clamp(X_WF.linear()(2, 0), -1.0, 1.0));
+}
+
+/// From sole to sole, + left higher [rad]; 0 of soles at one place.
+double slope_across(const std::array<Eigen::Isometry3d, core::kLegs>& X_WF) {
+  const Eigen::Vector3d to_left = X_WF[0].translation() - X_WF[1].translation();
+  const double spacing = to_left.head<2>().norm();
+  if (!(spacing > 0.0)) return 0.0;
+  return std::clamp(std::atan2(to_left.z(), spacing), -kSteepest, kSteepest);
 }
 
 /// The pressure asked for lies well within the sole: one that has risen about toe or heel comes
@@ -39,6 +43,15 @@ bool presses_flat(const Eigen::Isometry3d& X_WF, const core::Wrench& asked) {
   return std::abs(asked.moment.dot(X_WF.linear().col(1))) <= kWithin * load;
 }
 
+/// From sole to sole of a posture, across the trunk [m].
+double stance_width(const model::RobotParameters& robot, const core::JointVector& q) {
+  const auto side = [&](core::Leg leg) {
+    const core::LegVector angles = q.segment<core::kJointsPerLeg>(core::leg_offset(leg));
+    return model::leg_poses(robot, leg, angles).X_BF.translation().y();
+  };
+  return side(core::Leg::left) - side(core::Leg::right);
+}
+
 /// Of a sole about its lateral axis, + toes going down [rad/s].
 double pitch_rate(const core::RobotState& state, core::Leg leg) {
   return state.w_WB.dot(state.R_WB.col(1)) + state.dq[joint_index(leg, Joint::hip_pitch)] +
@@ -47,16 +60,25 @@ double pitch_rate(const core::RobotState& state, core::Leg leg) {
 
 }  // namespace
 
-double tilt_of(const core::LandingTarget& target) noexcept {
+double beyond_scatter(double slope) noexcept {
+  const double share = (std::abs(slope) - kScatter) / (kSure - kScatter);
+  return slope * std::clamp(share, 0.0, 1.0);
+}
+
+double slope_along(const core::TerrainProfile& profile, double x) noexcept {
   constexpr double kHalf = 0.06;  // a little within toe and heel [m]
   using Profile = core::TerrainProfile;
-  const auto heel = static_cast<std::size_t>(Profile::sample(target.distance - kHalf));
-  const auto toe = static_cast<std::size_t>(Profile::sample(target.distance + kHalf));
+  const auto heel = static_cast<std::size_t>(Profile::sample(x - kHalf));
+  const auto toe = static_cast<std::size_t>(Profile::sample(x + kHalf));
   if (toe <= heel) return 0.0;
-  const double rise = target.profile.mean[toe] - target.profile.mean[heel];
+  const double rise = profile.mean[toe] - profile.mean[heel];
   const double run = Profile::kStep * static_cast<double>(toe - heel);
   if (!std::isfinite(rise)) return 0.0;
   return std::clamp(-std::atan2(rise, run), -kSteepest, kSteepest);
+}
+
+GroundSlope slope_ahead(const core::LandingTarget& target) noexcept {
+  return {slope_along(target.profile, target.distance), slope_across(target.X_WF)};
 }
 
 void GroundTilt::observe(const model::RobotParameters& robot, const core::RobotState& state,
@@ -80,7 +102,9 @@ void GroundTilt::look_at_soles(const model::RobotParameters& robot, const core::
   if (std::abs(pitch[0] - pitch[1]) > kDifferent) return;
   const double mean = 0.5 * (pitch[0] + pitch[1]);
   if (std::abs(mean) > kSteepest) return;
-  under_ += std::min(dt / kTime, 1.0) * (mean - under_);
+  const double gain = std::min(dt / kTime, 1.0);
+  under_.along += gain * (mean - under_.along);
+  under_.across += gain * (slope_across(soles) - under_.across);
 }
 
 void GroundTilt::begin_on(const model::RobotParameters& robot,
@@ -89,20 +113,38 @@ void GroundTilt::begin_on(const model::RobotParameters& robot,
   look_at_soles(robot, state, kLong);
 }
 
-double GroundTilt::under() const noexcept {
-  return beyond_scatter(under_);
+GroundSlope GroundTilt::under() const noexcept {
+  return {beyond_scatter(under_.along), beyond_scatter(under_.across)};
 }
 
-double GroundTilt::in_flight(double flown) const noexcept {
+GroundSlope GroundTilt::in_flight(double flown) const noexcept {
   // Toes leave the ground as they stood, and are where they are to be before the ground can come.
   constexpr double kFrom = 0.25;
   constexpr double kTo = 0.75;
-  const double s = std::clamp((flown - kFrom) / (kTo - kFrom), 0.0, 1.0);
-  return std::lerp(under(), beyond_scatter(ahead_), s * s * (3.0 - 2.0 * s));
+  const double t = std::clamp((flown - kFrom) / (kTo - kFrom), 0.0, 1.0);
+  const double s = t * t * (3.0 - 2.0 * t);
+  const GroundSlope from = under();
+  return {std::lerp(from.along, beyond_scatter(ahead_.along), s),
+          std::lerp(from.across, beyond_scatter(ahead_.across), s)};
 }
 
-void tilt_soles(double tilt, core::JointVector& q) noexcept {
-  for (const core::Leg leg : core::kAllLegs) q[joint_index(leg, Joint::ankle)] += tilt;
+void lay_soles(const model::RobotParameters& robot, double pitch, const GroundSlope& slope,
+               core::JointVector& q) noexcept {
+  if (slope.across != 0.0) {
+    core::JointVector unused = core::JointVector::Zero();
+    const double half = 0.5 * stance_width(robot, q) * std::tan(slope.across);
+    const std::array<Stretch, core::kLegs> reach{Stretch{-half, 0.0}, Stretch{half, 0.0}};
+    stretch_each_leg(robot, pitch, reach, q, unused);
+  }
+  for (const core::Leg leg : core::kAllLegs) q[joint_index(leg, Joint::ankle)] += slope.along;
+}
+
+core::RobotState on_level_ground(const model::RobotParameters& robot, const core::RobotState& state,
+                                 const GroundSlope& slope) noexcept {
+  core::RobotState level = state;
+  const double pitch = model::rpy_from_rotation(state.R_WB).y();
+  lay_soles(robot, pitch, {-slope.along, -slope.across}, level.q);
+  return level;
 }
 
 }  // namespace hopscotch::control

@@ -252,6 +252,7 @@ Foothold score_foothold(const FootholdConfig& config, const StanceOnMap& stance,
   if (fit.why != Reason::none) return foothold;
 
   foothold.height = fit.plane(0);
+  foothold.rise_across = fit.plane(2);
   const bool level = std::abs(fit.plane(1)) <= std::tan(config.slope_max) &&
                      std::abs(fit.plane(2)) <= std::tan(config.cross_slope_max);
   const bool known = std::sqrt(fit.worst_variance) <= config.height_sigma_max;

@@ -33,6 +33,7 @@ struct Foothold {
   core::Reason why = core::Reason::none;  ///< `none`: safe. Otherwise why not.
   bool supported = false;                 ///< Both feet rest on one plane, edges disregarded.
   double height = core::kNaN;             ///< Of the plane at the mid-point, in S [m].
+  double rise_across = 0.0;               ///< Of the plane per metre to the left of the soles [-].
   double toe_margin = core::kNaN;   ///< Toes to the end of the tread; at most kMarginSearch [m].
   double heel_margin = core::kNaN;  ///< Heels to its start; at most kMarginSearch [m].
   double safe_probability = 0.0;    ///< Toes and heels come to rest on the tread.

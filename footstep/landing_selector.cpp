@@ -96,7 +96,7 @@ core::LandingTarget target_at(const StepRules& rules, const StanceOnMap& stance,
     const double side = leg == core::Leg::left ? stance.half_stance : -stance.half_stance;
     Eigen::Isometry3d& X_WF = target.X_WF[core::index(leg)];
     X_WF.linear() = of_feet.toRotationMatrix();
-    X_WF.translation() = centre + of_feet * Eigen::Vector3d(0.0, side, 0.0);
+    X_WF.translation() = centre + of_feet * Eigen::Vector3d(0.0, side, side * foothold.rise_across);
   }
   target.p_WS = stance.p_WS;
   target.heading = stance.heading;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 namespace hopscotch::apps::campaign {
 
@@ -58,6 +60,10 @@ const std::vector<FamilyRule>& family_rules() {
       {Family::stairs, "stairs", 4, {kEdge, kRise, with(kTread, 0.40)}},
       {Family::rising_boxes, "rising-boxes", 3, {kEdge, kGap, with(kStep, 0.06), kTread}},
       {Family::slopes, "slopes", 4, {kEdge, kSlope, with(kTread, 0.60)}},
+      {Family::side_slopes,
+       "side-slopes",
+       4,
+       {kEdge, with(kGap, 0.05), kSlope, with(kTread, 0.60)}},
       {Family::steps_and_gaps, "steps-and-gaps", 6, {kEdge, kGap, kStep, kTread}},
       {Family::mixture, "random-mixture", 6, {kEdge, kGap, kStep, kSlope, kTread}},
       {Family::jump_down, "jump-down", 0, {with(kEdge, 0.52), kDrop}},
@@ -90,9 +96,10 @@ sim::Slab slab(double begin, double end, double top) {
 
 /// What lies before a tread.
 struct Approach {
-  double gap = 0.0;    // [m]
-  double step = 0.0;   // [m]
-  double slope = 0.0;  // of the tread itself [rad]
+  double gap = 0.0;     // [m]
+  double step = 0.0;    // [m]
+  double slope = 0.0;   // of the tread itself [rad]
+  double across = 0.0;  // of the tread itself, + rising to the left [rad]
 };
 
 /// The obstacle of one tread of a mixture: each kind as likely as the others.
@@ -122,6 +129,12 @@ Approach approach_of(const FamilySpec& spec, const SizeDraw& size, int i) {
       if (i % 2 == 0) approach.slope = size("slope_rad", i);
       return approach;
     }
+    case Family::side_slopes: {
+      Approach approach;
+      approach.gap = size("gap_m", i);
+      if (i % 2 == 0) approach.across = size("slope_rad", i);
+      return approach;
+    }
     case Family::mixture: return mixed_approach(size, i);
     case Family::flat:
     case Family::leap:
@@ -129,6 +142,14 @@ Approach approach_of(const FamilySpec& spec, const SizeDraw& size, int i) {
     case Family::drops: break;
   }
   return {};
+}
+
+/// The slab turned by a quarter, so that it rises to the left; its middle keeps its height.
+void lean_across(double slope, sim::Slab& slab) {
+  std::swap(slab.half_size.x(), slab.half_size.y());
+  slab.yaw = 0.5 * std::numbers::pi;
+  slab.slope = slope;
+  slab.top -= slab.half_size.x() * std::tan(slope);
 }
 
 /// Tread after tread from the first edge on. The last one is long and level.
@@ -141,12 +162,13 @@ sim::Scenario chain(const FamilySpec& spec, const SizeDraw& size) {
   for (int i = 0; i < spec.treads; ++i) {
     const bool last = i + 1 == spec.treads;
     Approach approach = approach_of(spec, size, i);
-    if (last) approach.slope = 0.0;
+    if (last) approach.slope = approach.across = 0.0;
     const double length = last ? kLastTread : size("tread_m", i);
     x += approach.gap;
     top += approach.step;
     sim::Slab tread = slab(x, x + length, top);
     tread.slope = approach.slope;
+    if (approach.across != 0.0) lean_across(approach.across, tread);
     scenario.seen.slabs.push_back(tread);
     if (last) scenario.goal.x = x + kBeyondEdge;
     x += length;

@@ -22,6 +22,8 @@ enum class Family : std::uint8_t {
   stairs,          ///< Treads without gaps, all with the same rise.
   rising_boxes,    ///< Treads with gaps that rise.
   slopes,          ///< Ramps and level treads in turn.
+  side_slopes,     ///< Treads that slope across the way, with gaps between them, and level ones in
+                   ///< turn.
   steps_and_gaps,  ///< Treads with gaps, each higher or lower than the one before.
   mixture,         ///< Each tread comes after a gap, a step, both or a ramp, as drawn.
   jump_down,       ///< From a block down to level ground.

@@ -31,13 +31,13 @@ core::LandingTarget on_ramp(double slope) {
 }
 
 TEST(GroundTilt, OfATargetIsTheSlopeUnderItsSoles) {
-  EXPECT_NEAR(tilt_of(on_ramp(kSlope)), -kSlope, 1e-9);
-  EXPECT_NEAR(tilt_of(on_ramp(-kSlope)), kSlope, 1e-9);
-  EXPECT_EQ(tilt_of(on_ramp(0.0)), 0.0);
+  EXPECT_NEAR(slope_ahead(on_ramp(kSlope)).along, -kSlope, 1e-9);
+  EXPECT_NEAR(slope_ahead(on_ramp(-kSlope)).along, kSlope, 1e-9);
+  EXPECT_EQ(slope_ahead(on_ramp(0.0)).along, 0.0);
   core::LandingTarget unknown = on_ramp(kSlope);
   unknown.profile.mean.fill(std::nan(""));
-  EXPECT_EQ(tilt_of(unknown), 0.0);
-  EXPECT_EQ(tilt_of({}), 0.0);  // nobody said where
+  EXPECT_EQ(slope_ahead(unknown).along, 0.0);
+  EXPECT_EQ(slope_ahead({}).along, 0.0);  // nobody said where
 }
 
 class GroundTiltTest : public testing::ControlTickFixture {
@@ -45,7 +45,7 @@ class GroundTiltTest : public testing::ControlTickFixture {
   /// The soles lie on such a slope for a time.
   void stand_on(double slope, double time) {
     core::JointVector level = state_.q;
-    tilt_soles(-slope, state_.q);
+    lay_soles(robot_, 0.0, {-slope, 0.0}, state_.q);
     for (double t = 0.0; t < time; t += kTick) tilt_.observe(robot_, state_, asked_, kTick);
     state_.q = level;
   }
@@ -65,56 +65,91 @@ class GroundTiltTest : public testing::ControlTickFixture {
 
 TEST_F(GroundTiltTest, IsWhatSolesAtRestShow) {
   stand_on(kSlope, 0.3);
-  EXPECT_NEAR(tilt_.under(), -kSlope, 1e-3);
+  EXPECT_NEAR(tilt_.under().along, -kSlope, 1e-3);
   stand_on(0.0, 0.3);
-  EXPECT_EQ(tilt_.under(), 0.0);
+  EXPECT_EQ(tilt_.under().along, 0.0);
 }
 
 TEST_F(GroundTiltTest, ScatterOfLevelGroundIsNone) {
   stand_on(0.009, 0.5);
-  EXPECT_EQ(tilt_.under(), 0.0);
+  EXPECT_EQ(tilt_.under().along, 0.0);
 }
 
 TEST_F(GroundTiltTest, ASoleThatTurnsOrHangsOrStandsOnAnEdgeShowsNothing) {
   state_.dq[joint_index(Leg::left, Joint::ankle)] = 1.0;
   stand_on(kSlope, 0.3);
-  EXPECT_EQ(tilt_.under(), 0.0);
+  EXPECT_EQ(tilt_.under().along, 0.0);
   state_.dq.setZero();
   state_.contact = {true, false};
   stand_on(kSlope, 0.3);
-  EXPECT_EQ(tilt_.under(), 0.0);
+  EXPECT_EQ(tilt_.under().along, 0.0);
   state_.contact = {true, true};
   stand_on(0.4, 0.3);
-  EXPECT_EQ(tilt_.under(), 0.0);
+  EXPECT_EQ(tilt_.under().along, 0.0);
 }
 
 TEST_F(GroundTiltTest, SolesThatPushAtToeOrHeelMayHaveRisenAboutIt) {
   for (const double ahead : {0.065, -0.065}) {
     ask(70.0, ahead);
     stand_on(0.1, 0.3);
-    EXPECT_EQ(tilt_.under(), 0.0) << ahead;
+    EXPECT_EQ(tilt_.under().along, 0.0) << ahead;
   }
   ask(10.0, 0.0);  // hardly on the ground
   stand_on(0.1, 0.3);
-  EXPECT_EQ(tilt_.under(), 0.0);
+  EXPECT_EQ(tilt_.under().along, 0.0);
   ask(70.0, 0.03);
   stand_on(0.1, 0.3);
-  EXPECT_NEAR(tilt_.under(), -0.1, 1e-3);
+  EXPECT_NEAR(tilt_.under().along, -0.1, 1e-3);
+}
+
+TEST_F(GroundTiltTest, LegsReachSolesThatStandAtDifferentHeightsWithAnUprightTrunk) {
+  core::RobotState laid = state_;
+  lay_soles(robot_, 0.0, {0.0, kSlope}, laid.q);
+  const auto before = model::sole_poses(robot_, state_);
+  const auto after = model::sole_poses(robot_, laid);
+  const double spacing = (before[0].translation() - before[1].translation()).y();
+  for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
+    const double up = (leg == 0 ? 0.5 : -0.5) * spacing * std::tan(kSlope);
+    const Eigen::Vector3d moved = after[leg].translation() - before[leg].translation();
+    EXPECT_NEAR((moved - Eigen::Vector3d(0.0, 0.0, up)).norm(), 0.0, 1e-4);
+    EXPECT_NEAR((after[leg].linear() - before[leg].linear()).norm(), 0.0, 1e-9);
+  }
+  const core::RobotState level = on_level_ground(robot_, laid, {0.0, kSlope});
+  EXPECT_LT((level.q - state_.q).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST_F(GroundTiltTest, SolesAtRestShowTheSlopeAcross) {
+  const core::JointVector level = state_.q;
+  lay_soles(robot_, 0.0, {0.0, -kSlope}, state_.q);
+  for (double t = 0.0; t < 0.3; t += kTick) tilt_.observe(robot_, state_, asked_, kTick);
+  EXPECT_NEAR(tilt_.under().across, -kSlope, 1e-3);
+  EXPECT_EQ(tilt_.under().along, 0.0);
+  state_.q = level;
+}
+
+TEST_F(GroundTiltTest, ATargetsSolesTellTheSlopeAcross) {
+  core::LandingTarget target = on_ramp(0.0);
+  target.X_WF[0].translation() = Eigen::Vector3d(0.4, 0.1, 0.012);
+  target.X_WF[1].translation() = Eigen::Vector3d(0.4, -0.1, -0.012);
+  EXPECT_NEAR(slope_ahead(target).across, std::atan(0.12), 1e-12);
+  tilt_.begin(slope_ahead(target));
+  EXPECT_EQ(tilt_.in_flight(0.0).across, 0.0);
+  EXPECT_NEAR(tilt_.in_flight(1.0).across, std::atan(0.12), 1e-12);
 }
 
 TEST_F(GroundTiltTest, TurnsInFlightFromOneGroundToTheNext) {
   stand_on(kSlope, 0.3);
-  tilt_.begin(0.05);
-  EXPECT_NEAR(tilt_.in_flight(0.0), -kSlope, 1e-3);
-  EXPECT_NEAR(tilt_.in_flight(0.8), 0.05, 1e-12);
+  tilt_.begin({0.05, 0.0});
+  EXPECT_NEAR(tilt_.in_flight(0.0).along, -kSlope, 1e-3);
+  EXPECT_NEAR(tilt_.in_flight(0.8).along, 0.05, 1e-12);
   tilt_.land();
-  EXPECT_NEAR(tilt_.under(), 0.05, 1e-12);
+  EXPECT_NEAR(tilt_.under().along, 0.05, 1e-12);
 }
 
 TEST_F(GroundTiltTest, ARobotThatStandsOnASlopeDoesNotPushItsToesIntoIt) {
   const core::JointVector level = state_.q;
   ControlTick control = standing();
-  tilt_soles(-kSlope, state_.q);
+  lay_soles(robot_, 0.0, {-kSlope, 0.0}, state_.q);
   core::JointCommand command;
   for (int i = 0; i < 1000; ++i) command = step(control);
   EXPECT_LT((command.q - state_.q).cwiseAbs().maxCoeff(), 0.01);
@@ -152,7 +187,7 @@ TEST_F(GroundTiltTest, FeetComeDownOnASlopeAsItLies) {
 }
 
 TEST_F(GroundTiltTest, SwitchedOnOnASlopeItStandsUpWithoutAStep) {
-  tilt_soles(-kSlope, state_.q);
+  lay_soles(robot_, 0.0, {-kSlope, 0.0}, state_.q);
   ControlTick control = standing();
   core::JointVector last = step(control).q;
   EXPECT_LT((last - state_.q).cwiseAbs().maxCoeff(), 1e-9);

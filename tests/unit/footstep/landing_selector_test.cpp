@@ -46,6 +46,23 @@ TEST(LandingSelector, SolesKeepTheirStanceAndHeadingInTheWorld) {
   EXPECT_NEAR(choice.target->heading, 0.6, 1e-6);
 }
 
+TEST(LandingSelector, SolesOnGroundThatSlopesAcrossStandAtDifferentHeights) {
+  constexpr double kAcross = 0.1;  // [rad]
+  KnownCourse known(kFlat);
+  for (int iy = 0; iy < known.map.size_y; ++iy) {
+    for (int ix = 0; ix < known.map.size_x; ++ix) {
+      const double y = known.map.origin_y + (iy + 0.5) * known.map.resolution;
+      known.map.at(ix, iy).height = static_cast<float>(std::tan(kAcross) * y);
+    }
+  }
+  known.look_again();
+  const core::TargetChoice choice = known.choose();
+  ASSERT_TRUE(choice.target) << choice.refusal.text();
+  const Eigen::Vector3d to_left =
+      choice.target->X_WF[0].translation() - choice.target->X_WF[1].translation();
+  EXPECT_NEAR(std::atan2(to_left.z(), to_left.y()), kAcross, 0.005);
+}
+
 TEST(LandingSelector, SteppingStoneIsHitNearItsCentre) {
   const Course stones{
       .blocks = {

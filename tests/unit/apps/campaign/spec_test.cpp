@@ -180,8 +180,9 @@ TEST(Families, ALeapIsAsLongAndAsHighAsAsked) {
 }
 
 TEST(Families, AllMakeScenariosThatReadBack) {
-  for (const char* family : {"flat", "leap", "steps", "gaps", "stones", "stairs", "rising-boxes",
-                             "slopes", "steps-and-gaps", "random-mixture", "jump-down", "drops"}) {
+  for (const char* family :
+       {"flat", "leap", "steps", "gaps", "stones", "stairs", "rising-boxes", "slopes",
+        "side-slopes", "steps-and-gaps", "random-mixture", "jump-down", "drops"}) {
     const TrialMaker maker(spec_of(kHead + "scenario: {family: " + family + "}\n"));
     for (std::int64_t i = 0; i < 10; ++i) {
       const TrialSetup setup = maker.setup(i);
@@ -189,6 +190,20 @@ TEST(Families, AllMakeScenariosThatReadBack) {
       EXPECT_GE(setup.scenario.seen.slabs.size(), 1U) << family;
     }
   }
+}
+
+TEST(Families, SideSlopesRiseToOneSideBehindAGapAndKeepTheirMiddleLevel) {
+  const TrialMaker maker(spec_of(
+      kHead +
+      "scenario: {family: side-slopes, edge_m: 0.2, gap_m: 0.05, slope_rad: 0.1, treads: 2}\n"));
+  const auto& slabs = maker.setup(0).scenario.seen.slabs;
+  ASSERT_EQ(slabs.size(), 3U);
+  EXPECT_NEAR(slabs[1].height({0.55, 0.0}), 0.0, 1e-9);
+  EXPECT_NEAR(slabs[1].height({0.55, 0.1}), 0.1 * std::tan(0.1), 1e-9);
+  EXPECT_NEAR(slabs[1].height({0.30, -0.1}), -0.1 * std::tan(0.1), 1e-9);
+  EXPECT_FALSE(slabs[1].contains({0.24, 0.0}));
+  EXPECT_TRUE(slabs[1].contains({0.26, 0.0}));
+  EXPECT_EQ(slabs[2].slope, 0.0);
 }
 
 TEST(Families, StairsRiseByOneRiseAndStonesStayAboutTheGround) {
