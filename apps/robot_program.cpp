@@ -47,12 +47,13 @@ RobotProgram::RobotProgram(const RobotConfig& config, Wire wire)
       run_id_(wall_clock_us()),
       gate_(run_id_, run_id_),
       live_(live_url(), box_, run_id_),
-      spare_brains_(
-          {.name = "preparation", .threaded = config.pacing.mode == Pacing::Mode::real_time},
-          [this](std::unique_ptr<RobotBrain>& used, std::unique_ptr<RobotBrain>& spare) {
-            used.reset();
-            spare = make_brain();
-          }) {
+      spare_brains_({.name = "preparation",
+                     .threaded = config.pacing.mode == Pacing::Mode::real_time,
+                     .thread = {}},
+                    [this](std::unique_ptr<RobotBrain>& used, std::unique_ptr<RobotBrain>& spare) {
+                      used.reset();
+                      spare = make_brain();
+                    }) {
   if (config.session.has_eyes) eyes_.emplace(live_url());
   spare_ = make_brain();
 }
@@ -135,7 +136,7 @@ ExitStatus RobotProgram::run(const std::atomic<bool>& interrupted) {
     const std::size_t before = core::allocation_count();
     session_.tick();
     attend();
-    exchanges_with_heap_ += core::allocation_count() != before ? 1 : 0;
+    if (core::allocation_count() != before) ++exchanges_with_heap_;
   }
   if (world_gone_) {
     std::fprintf(stderr, "robot: the emulated drives have gone\n");

@@ -81,7 +81,7 @@ Header take_header(std::string_view& bytes) {
     if (key == "end_header") return header;
     if (key == "format") header.encoding = next_word(*line);
     if (key == "element") {
-      Element element{.name = std::string(next_word(*line))};
+      Element element{.name = std::string(next_word(*line)), .columns = {}};
       const std::optional<std::size_t> rows = count_of(next_word(*line));
       if (!rows) throw MalformedCloud("the PLY header gives element " + element.name + " no count");
       element.rows = *rows;
