@@ -173,7 +173,10 @@ void RobotProgram::attend() {
       session_.stop_now();
     }
   }
-  if (spare_brains_.made() != nullptr) spare_ = std::move(*spare_brains_.take(now_));
+  (void)spare_brains_.made();  // take() gives what that has shown
+  if (std::unique_ptr<RobotBrain>* const spare = spare_brains_.take(now_)) {
+    spare_ = std::move(*spare);
+  }
   voice_.tell(now_, session_, brain_.get());
   if (wire_ == Wire::listen) voice_.tell_joints(now_, session_, plant_);
 }

@@ -55,11 +55,15 @@ template <std::size_t Rows>
   });
 }
 
+// GCC 12 at -O2 takes the subscripts below, all less than 6, to be out of bounds.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Warray-bounds"
 /// Copies the lower triangle of the first six rows to the upper.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline void mirror(double (&columns)[kWrench][Rows]) {
   repeat<kWrench>([&](auto j) { repeat<j>([&](auto i) { columns[j][i] = columns[i][j]; }); });
 }
+#pragma GCC diagnostic pop
 
 /// S = E W^-1 E': what the feet can do to the velocities, as a sum of nonnegative rank-one terms.
 [[gnu::always_inline]] inline void compliance(const Step& step, const Elimination& elimination,
