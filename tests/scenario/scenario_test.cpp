@@ -45,7 +45,6 @@ TEST_P(ShippedScenario, IsCrossedWithTheCamera) {
   EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
   EXPECT_EQ(result.falls, 0);
   for (const JumpResult& jump : result.jumps) {
-    if (jump.outcome == JumpOutcome::aborted) continue;  // called off on the ground, tried again
     EXPECT_EQ(jump.outcome, JumpOutcome::landed) << "jump " << jump.index << ": " << jump.reason;
     EXPECT_LE(jump.peak.torque_ratio, 1.0 + 1e-9);  // the plant enforces the limits
     EXPECT_LE(jump.peak.power_ratio, 1.0 + 1e-9);
@@ -67,6 +66,49 @@ TEST(Scenario, RisingBoxesTakeLessThanSixSeconds) {
       sim::Scenario::load(std::string(kConfig) + "scenarios/rising-boxes.yaml"), Eyes::camera, 3));
   EXPECT_EQ(result.outcome, RunOutcome::completed);
   EXPECT_LT(result.duration, 6.0);
+}
+
+TEST(Scenario, TheHopAfterAJumpDownIsNotCalledOff) {
+  // The jump down lands far ahead and rocks onto its toes.
+  const RunResult result = result_of(request_of(
+      sim::Scenario::load(std::string(kConfig) + "scenarios/jump-down.yaml"), Eyes::camera, 36));
+  EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
+  for (const JumpResult& jump : result.jumps) EXPECT_EQ(jump.outcome, JumpOutcome::landed);
+}
+
+void expect_upright_landings(const RunResult& result) {
+  EXPECT_EQ(result.outcome, RunOutcome::completed) << result.reason;
+  for (const JumpResult& jump : result.jumps) {
+    EXPECT_EQ(jump.outcome, JumpOutcome::landed) << "jump " << jump.index;
+    EXPECT_NEAR(jump.landing.distance, jump.target.distance, 0.05) << "jump " << jump.index;
+    EXPECT_LT(jump.landing.pitch_error, 0.3) << "jump " << jump.index;
+  }
+}
+
+TEST(Scenario, APushOffFromASlopeDoesNotSlip) {
+  // Soles hold 0.23 of the load along the slope; plans for level ground take 0.35.
+  expect_upright_landings(
+      run_text("name: uphill\n"
+               "friction: 0.4\n"
+               "slabs:\n"
+               "  - {x_m: [-1.0, 0.175]}\n"
+               "  - {x_m: [0.175, 0.775], slope_rad: 0.16}\n"
+               "  - {x_m: [0.775, 3.0], top_m: 0.0968}\n"
+               "goal: {x_m: 0.78}\n"));
+}
+
+TEST(Scenario, ASlopeAcrossTheWayIsLandedOnAndLeft) {
+  // 0.6 m along the way behind a gap of 5 cm, rising to the left, level in its middle.
+  const RunResult result = run_text(
+      "name: sideways\n"
+      "slabs:\n"
+      "  - {x_m: [-1.0, 0.175]}\n"
+      "  - {x_m: [-0.075, 1.125], y_m: [-0.3, 0.3], top_m: -0.10297, slope_rad: 0.17,\n"
+      "     yaw_rad: 1.5707963}\n"
+      "  - {x_m: [0.875, 4.0]}\n"
+      "goal: {x_m: 0.9}\n");
+  expect_upright_landings(result);
+  EXPECT_GE(result.jumps.size(), 3U);
 }
 
 TEST(Scenario, AGapTooWideIsRefusedStanding) {
