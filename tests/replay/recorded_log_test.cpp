@@ -20,13 +20,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The second jump leaves a slope: its plan is made with less friction.
 constexpr const char* kScenario =
     "name: replayed\n"
     "camera: {width: 320, height: 240}\n"
     "slabs:\n"
     "  - {x_m: [-1.0, 0.175]}\n"
-    "  - {x_m: [0.275, 0.625], top_m: 0.05}\n"
-    "  - {x_m: [0.725, 3.0], top_m: 0.08}\n"
+    "  - {x_m: [0.275, 0.625], top_m: 0.05, slope_rad: 0.1}\n"
+    "  - {x_m: [0.725, 3.0], top_m: 0.09}\n"
     "goal: {jumps: 2}\n";
 
 ProgramConfig tuning() {
