@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <map>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -8,9 +10,11 @@
 #include "apps/run_result.hpp"
 #include "apps/shipped_jumps.hpp"
 #include "apps/stopwatch.hpp"
+#include "model/knot_state.hpp"
 #include "planner/chain_solver.hpp"
 #include "planner/jump_planner.hpp"
 #include "planner/planar_task.hpp"
+#include "planner/replanner.hpp"
 #include "planner/warm_start.hpp"
 
 namespace hopscotch::apps {
@@ -35,15 +39,53 @@ struct PlannerSamples {
   std::map<std::string_view, int> rungs;  ///< Of the same.
   int planned = 0;
 
-  void plan(planner::JumpPlanner& planner, const planner::PlanRequest& request) {
+  core::Result<core::JumpPlan> plan(planner::JumpPlanner& planner,
+                                    const planner::PlanRequest& request) {
     const Stopwatch watch(TimeOf::thread);
-    const core::Result<core::JumpPlan> result = planner.plan(request);
+    core::Result<core::JumpPlan> result = planner.plan(request);
     plan_ms.push_back(watch.milliseconds());
     iterations.push_back(planner.iterations());
-    if (!result) return;
+    if (!result) return result;
     ++planned;
     ++rungs[planner::plan_rung_name(planner.rung())];
     dense_violation.push_back(result->certificate.dense_max_violation);
+    return result;
+  }
+};
+
+/// Plans the rests of a jump from knots of its takeoff, as if pushed there.
+struct ReplanSamples {
+  /// Takeoff steps done, and how much faster than planned the trunk turns then [rad/s].
+  struct Push {
+    int steps_done;
+    double rate;
+  };
+  static constexpr std::array kPushes{Push{5, 0.1}, Push{12, -0.1}, Push{18, 0.1}};
+
+  const BenchSetup& setup;
+  planner::Replanner replanner{setup.config.planner, setup.robot};
+  std::vector<double> replan_ms;
+  std::vector<double> iterations;
+  int planned = 0;
+
+  void replan(const planner::PlanRequest& request, const core::JumpPlan& plan,
+              const planner::KnownJump& solution) {
+    const auto whole = std::make_shared<const planner::KnownJump>(solution);
+    for (const auto [steps_done, rate] : kPushes) {
+      planner::RestRequest rest{
+          .id = request.id,
+          .whole = whole,
+          .steps_done = steps_done,
+          .state = model::state_of(plan.knots[static_cast<std::size_t>(steps_done)]),
+          .target = request.target,
+          .final_posture = request.final_posture};
+      rest.state.w_WB.y() += rate;
+      const Stopwatch watch(TimeOf::thread);
+      const bool found = static_cast<bool>(replanner.replan(rest));
+      replan_ms.push_back(watch.milliseconds());
+      iterations.push_back(replanner.iterations());
+      planned += found ? 1 : 0;
+    }
   }
 };
 
@@ -109,26 +151,31 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
   PlannerSamples closed_form;
   PlannerSamples warm;
   PlannerSamples ipopt;
+  ReplanSamples replanned{setup};
   IterationSamples iterations(setup);
   const std::vector<BenchTarget> targets = read_targets();
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    const planner::PlanRequest request = request_for(setup, targets[i]);
-    cold.plan(planner, request);
+    planner::PlanRequest request = request_for(setup, targets[i]);
+    request.id = i + 1;
+    const core::Result<core::JumpPlan> plan = cold.plan(planner, request);
+    if (plan && planner.rung() != planner::PlanRung::library) {
+      replanned.replan(request, *plan, *planner.last());
+    }
     planner::PlanRequest from_guess = request;
     from_guess.guess = planner::StartGuess::kinematic;
-    closed_form.plan(planner, from_guess);
+    (void)closed_form.plan(planner, from_guess);
     iterations.solve(request);
     BenchTarget neighbour = targets[i];
     neighbour.distance += i % 2 == 0 ? kMoved : -kMoved;
     if (planner.plan(request_for(setup, neighbour))) {
       planner::PlanRequest again = request;
       again.guess = planner::StartGuess::previous;
-      warm.plan(planner, again);
+      (void)warm.plan(planner, again);
     }
     if (i % kIpoptEvery != 0) continue;
     planner::PlanRequest reference = request;
     reference.solver = planner::Solver::ipopt;
-    ipopt.plan(planner, reference);
+    (void)ipopt.plan(planner, reference);
   }
   const double count = static_cast<double>(targets.size());
   return {{"n", targets.size()},
@@ -136,9 +183,11 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
           {"cold_ms", percentile_group(cold.plan_ms, 1.0)},
           {"cold_closed_form_ms", percentile_group(closed_form.plan_ms, 1.0)},
           {"warm_ms", percentile_group(warm.plan_ms, 1.0)},
+          {"replan_ms", percentile_group(replanned.replan_ms, 1.0)},
           {"cold_iterations", percentile_group(cold.iterations, 1.0)},
           {"cold_closed_form_iterations", percentile_group(closed_form.iterations, 1.0)},
           {"warm_iterations", percentile_group(warm.iterations, 1.0)},
+          {"replan_iterations", percentile_group(replanned.iterations, 1.0)},
           {"iteration_ms", percentile_group(iterations.iteration_ms, 1.0)},
           {"ipopt_ms", percentile_group(ipopt.plan_ms, 1.0)},
           {"success", cold.planned / count},  // certified plans
@@ -148,6 +197,8 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
           {"rungs", cold.rungs},
           {"dense_violation", percentile_group(cold.dense_violation, 1.0)},
           {"warm_success", warm.planned / std::max(1.0, static_cast<double>(warm.plan_ms.size()))},
+          {"replan_success",
+           replanned.planned / std::max(1.0, static_cast<double>(replanned.replan_ms.size()))},
           {"targets", targets.size()},
           {"shares", iterations.shares()}};
 }

@@ -54,6 +54,7 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
       doubt_(config.footstep.doubt),
       selector_(config.footstep, robot),
       planner_(config.planner, robot, shipped_jumps(robot.name, config.planner.steps)),
+      replanner_(config.planner, robot),
       mpc_(config.control.wrench_mpc, robot),
       sight_({.name = "perception",
               .latency = config.runtime.perception_latency,
@@ -77,6 +78,14 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
                 [this](const DecisionQuestion& question, Decision& decision) {
                   make_decision(question, decision);
                 }),
+      rest_({.name = "re-planning",
+             .latency = config.runtime.replanning_latency,
+             .threaded = threading == Threading::threads,
+             .thread = config.threads.planning},
+            [this](const RestQuestion& question, Rest& rest) {
+              rest.steps_done = question.request.steps_done;
+              rest.plan = replanner_.replan(question.request);
+            }),
       balance_({.name = "MPC",
                 .latency = config.runtime.mpc_latency,
                 .threaded = threading == Threading::threads,
@@ -132,6 +141,7 @@ void Pipeline::run_stages(core::DepthSource& camera) {
   command_ = control_->tick(state_);
   events_.allocations += core::allocation_count() - before;
   events_.tick_ms = watch.milliseconds();
+  replan(state_.stamp);
   balance(state_.stamp);
   watch_mission(state_);
   if (end_) desk_.withdraw_target("the run ended first");
@@ -199,7 +209,7 @@ void Pipeline::look(core::Stamp now, core::DepthSource& camera) {
 /// Where to, and how: the next jump is chosen and planned while the present one lands.
 void Pipeline::decide(const core::RobotState& state) {
   refuse_if_locked();
-  if (Decision* const decision = decision_.take(state.stamp)) receive_plan(*decision->plan);
+  if (const Decision* const decision = decision_.take(state.stamp)) receive_plan(*decision);
   if (is_idle(state) && is_blind(state.stamp)) {
     for_operator_ = desk_.due().has_value();
     // Made once: it is said at every tick.
@@ -210,6 +220,30 @@ void Pipeline::decide(const core::RobotState& state) {
     ask_where(state);
   }
   if (const Decision* const decision = decision_.made()) weigh(state.stamp, *decision);
+}
+
+/// While a jump pushes off, what is left of it is planned anew from where the robot is: from one
+/// knot after the other. The plan in hand counts until another one is certified.
+void Pipeline::replan(core::Stamp now) {
+  if (const Rest* const rest = rest_.take(now); rest != nullptr && *rest->plan) {
+    const auto knot = static_cast<std::size_t>(rest->steps_done);
+    events_.replanned = control_->replace_rest(**rest->plan, knot);
+    mpc_urgent_ = mpc_urgent_ || events_.replanned;
+  }
+  (void)rest_.made();  // nobody records them
+  if (!config_.runtime.replanning || !rest_.vacant() || control_->plan().id != solved_id_) return;
+  const auto question = control_->rest_question(config_.runtime.replanning_latency);
+  if (!question) return;
+  const int steps_done = static_cast<int>(question->knot);
+  if (config_.planner.steps.takeoff - steps_done < planner::Replanner::kStepsLeftMin) return;
+  const core::JumpPlan& plan = control_->plan();
+  rest_.question().request = {.id = plan.id,
+                              .whole = solution_,
+                              .steps_done = steps_done,
+                              .state = question->state,
+                              .target = plan.target,
+                              .final_posture = config_.stand_posture};
+  rest_.ask(now);
 }
 
 /// The MPC answers once its latency has passed; a touchdown or a take-off asks at once.
@@ -278,7 +312,7 @@ void Pipeline::make_decision(const DecisionQuestion& question, Decision& decisio
                                .target = *decision.choice.target,
                                .final_posture = config_.stand_posture,
                                .id = plan_id};
-  decision.plan = planner_.plan(request);
+  plan_jump(request, decision);
   // Ground that cannot be cleared as high as it might be is cleared as high as possible.
   footstep::LandingTask bolder = task;
   for (const double share : {0.5, 0.0}) {
@@ -287,8 +321,14 @@ void Pipeline::make_decision(const DecisionQuestion& question, Decision& decisio
     const core::TargetChoice again =
         selector_.choose({*map, decision.terrain, *hanging}, rest, bolder);
     if (again.target) request.target.profile = again.target->profile;
-    decision.plan = planner_.plan(request);
+    plan_jump(request, decision);
   }
+}
+
+/// On the planning stage's thread.
+void Pipeline::plan_jump(const planner::PlanRequest& request, Decision& decision) {
+  decision.plan = planner_.plan(request);
+  decision.solution = config_.runtime.replanning ? planner_.solution() : nullptr;
 }
 
 void Pipeline::weigh(core::Stamp now, const Decision& decision) {
@@ -307,7 +347,8 @@ void Pipeline::weigh(core::Stamp now, const Decision& decision) {
   events_.planning_ms = decision_.work_ms();
 }
 
-void Pipeline::receive_plan(const core::Result<core::JumpPlan>& plan) {
+void Pipeline::receive_plan(const Decision& decision) {
+  const core::Result<core::JumpPlan>& plan = *decision.plan;
   task_.target.reset();
   if (for_operator_) {
     const core::ControlStatus& status = control_->status();
@@ -322,6 +363,8 @@ void Pipeline::receive_plan(const core::Result<core::JumpPlan>& plan) {
   if (plan) {
     failed_distances_.clear();
     control_->offer(*plan);
+    solution_ = decision.solution;
+    solved_id_ = solution_ ? plan->id : 0;
   } else {
     next_best(plan.error());
   }

@@ -28,6 +28,7 @@
 #include "model/robot_parameters.hpp"
 #include "perception/occupancy.hpp"
 #include "perception/terrain_mapper.hpp"
+#include "planner/replanner.hpp"
 
 namespace hopscotch::apps {
 
@@ -59,6 +60,7 @@ struct PipelineEvents {
   std::optional<core::OneStepTerrain> terrain;
   std::optional<core::TargetChoice> choice;
   std::optional<core::Result<core::JumpPlan>> plan;
+  bool replanned = false;                     ///< The takeoff goes on by a new plan of its rest.
   std::vector<core::OperatorAnswer> answers;  ///< To commands of the operator.
   std::optional<double> perception_ms;        ///< Wall time of the stage in this tick.
   std::optional<double> planning_ms;
@@ -114,6 +116,18 @@ struct Decision {
   core::OneStepTerrain terrain;
   core::TargetChoice choice;
   std::optional<core::Result<core::JumpPlan>> plan;  ///< Empty without a target.
+  /// The plan's solution, which its rest may be planned anew from; null if it has none.
+  std::shared_ptr<const planner::KnownJump> solution;
+};
+
+/// What is left of the jump whose takeoff is under way.
+struct RestQuestion {
+  planner::RestRequest request;
+};
+
+struct Rest {
+  int steps_done = 0;
+  std::optional<core::Result<core::JumpPlan>> plan;
 };
 
 struct BalanceQuestion {
@@ -165,7 +179,7 @@ class Pipeline {
   [[nodiscard]] const control::WrenchMpc& mpc() const { return mpc_; }
   /// Results that came later than their stage's declared latency; none in lock-step.
   [[nodiscard]] std::uint64_t late_results() const {
-    return sight_.late() + decision_.late() + balance_.late();
+    return sight_.late() + decision_.late() + rest_.late() + balance_.late();
   }
 
  private:
@@ -173,9 +187,11 @@ class Pipeline {
   void compare_height(const core::RobotState& state);
   void look(core::Stamp now, core::DepthSource& camera);
   void decide(const core::RobotState& state);
+  void replan(core::Stamp now);
   void balance(core::Stamp now);
   void start(const core::RobotState& state);
-  void receive_plan(const core::Result<core::JumpPlan>& plan);
+  void receive_plan(const Decision& decision);
+  void plan_jump(const planner::PlanRequest& request, Decision& decision);
   void count_called_off(std::uint64_t plan_id);
   void watch_mission(const core::RobotState& state);
   void ask_where(const core::RobotState& state);
@@ -208,6 +224,7 @@ class Pipeline {
   footstep::HeightDoubt doubt_;
   footstep::LandingSelector selector_;
   SlopePlanner planner_;
+  planner::Replanner replanner_;
   control::WrenchMpc mpc_;
   std::optional<control::ControlTick> control_;  // starts with the first state
 
@@ -233,6 +250,8 @@ class Pipeline {
   int jumps_done_ = 0;
   int called_off_ = 0;  ///< Jumps in a row that strayed before they rose.
   std::uint64_t plans_made_ = 0;
+  std::uint64_t solved_id_ = 0;  ///< Of the plan that `solution_` is of.
+  std::shared_ptr<const planner::KnownJump> solution_;
   std::optional<MissionEnd> end_;
   core::Refusal end_reason_;
   PipelineEvents events_;
@@ -240,6 +259,7 @@ class Pipeline {
   // Last: their threads use the stages above.
   Stage<SightQuestion, Sight> sight_;
   Stage<DecisionQuestion, Decision> decision_;
+  Stage<RestQuestion, Rest> rest_;
   Stage<BalanceQuestion, control::MpcAnswer> balance_;
 };
 

@@ -11,6 +11,9 @@ RuntimeConfig RuntimeConfig::load(const core::ConfigReader& section) {
   config.planning_latency =
       1e-3 * section.number("planning_latency_ms", Range::closed(0.0, 5000.0));
   config.mpc_latency = 1e-3 * section.number("mpc_latency_ms", Range::closed(0.0, 20.0));
+  config.replanning = section.flag("replanning");
+  config.replanning_latency =
+      1e-3 * section.number("replanning_latency_ms", Range::closed(0.0, 100.0));
   config.mpc_period = 1e-3 * section.number("mpc_period_ms", Range::closed(1.0, 50.0));
   config.look_time = section.number("look_time_s", Range::closed(0.0, 5.0));
   config.look_frames = section.integer("look_frames", 1, 100);

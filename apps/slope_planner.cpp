@@ -39,11 +39,20 @@ double SlopePlanner::friction_for(const core::LandingTarget& target) const {
 
 core::Result<core::JumpPlan> SlopePlanner::plan(const planner::PlanRequest& request) {
   const double friction = friction_for(request.target);
-  if (!(friction < config_.friction)) return level_.plan(request);
+  solved_ = false;
+  if (!(friction < config_.friction)) {
+    core::Result<core::JumpPlan> plan = level_.plan(request);
+    solved_ = plan && level_.rung() != planner::PlanRung::library;
+    return plan;
+  }
   planner::PlannerConfig config = config_;
   constexpr double kLeast = 0.05;  // of a planner's friction; no plan comes of so little
   config.friction = std::max(friction, kLeast);
   return planner::JumpPlanner(config, robot_, library_).plan(request);
+}
+
+std::shared_ptr<const planner::KnownJump> SlopePlanner::solution() const {
+  return solved_ ? std::make_shared<const planner::KnownJump>(*level_.last()) : nullptr;
 }
 
 }  // namespace hopscotch::apps

@@ -6,6 +6,7 @@
 #include "core/result.hpp"
 #include "model/robot_parameters.hpp"
 #include "planner/jump_planner.hpp"
+#include "planner/known_jump.hpp"
 
 namespace hopscotch::apps {
 
@@ -27,6 +28,10 @@ class SlopePlanner {
   /// As planner::JumpPlanner::plan().
   core::Result<core::JumpPlan> plan(const planner::PlanRequest& request);
 
+  /// Of the last plan, for plans of its rest; null on slopes, where those would slide, and if it was
+  /// not solved.
+  [[nodiscard]] std::shared_ptr<const planner::KnownJump> solution() const;
+
   /// The friction that a plan to a target may count on, as if the ground were level [-].
   [[nodiscard]] double friction_for(const core::LandingTarget& target) const;
 
@@ -35,6 +40,7 @@ class SlopePlanner {
   model::RobotParameters robot_;
   std::shared_ptr<const planner::JumpLibrary> library_;
   planner::JumpPlanner level_;
+  bool solved_ = false;  ///< By `level_`, the last plan.
 };
 
 }  // namespace hopscotch::apps

@@ -114,7 +114,37 @@ void ControlTick::begin_next(const core::RobotState& state) noexcept {
   for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
     placement_.landing.soles[leg] = plan_.target.X_WF[leg].translation() + placement_.landing.shift;
   }
+  replaced_knot_ = 0;
   supervisor_.begin_jump(plan_);
+}
+
+std::optional<ControlTick::RestQuestion> ControlTick::rest_question(double ahead) const noexcept {
+  if (!core::is_pushing_off(phase()) || plan_.id == 0) return std::nullopt;
+  const double time = command_time(state_.stamp);
+  const std::size_t knot = knot_index(plan_, time + ahead) + 1;
+  if (knot <= replaced_knot_ || plan_.knots[knot].time >= plan_.liftoff_time) return std::nullopt;
+  const double body_time = time - config_.actuation_delay;
+  return RestQuestion{knot,
+                      extrapolate(state_, plan_.knots[knot].time - body_time,
+                                  sample_plan(plan_, std::max(0.0, body_time)), plan_.knots[knot])};
+}
+
+bool ControlTick::replace_rest(const core::JumpPlan& rest, std::size_t knot) noexcept {
+  constexpr double kLate = 0.002;  // [s]
+  const bool fits = core::is_pushing_off(phase()) && rest.id == plan_.id && knot > replaced_knot_ &&
+                    knot + rest.knot_count == plan_.knot_count;
+  if (!fits || command_time(state_.stamp) > plan_.knots[knot].time + kLate) return false;
+  const double begin = plan_.knots[knot].time;
+  for (std::size_t i = 0; i < rest.knot_count; ++i) {
+    plan_.knots[knot + i] = rest.knots[i];
+    plan_.knots[knot + i].time += begin;
+  }
+  plan_.liftoff_time = begin + rest.liftoff_time;
+  plan_.touchdown_time = begin + rest.touchdown_time;
+  plan_.duration = begin + rest.duration;
+  replaced_knot_ = knot;
+  replaced_ = state_.stamp;
+  return true;
 }
 
 /// From the present motion to a stand on the present soles.
@@ -391,6 +421,7 @@ void ControlTick::push_off(const core::RobotState& state, const core::JumpKnot& 
     ++stale_ticks_;
     return;
   }
+  if (answer_.stamp < replaced_) return;  // it corrects what the plan has taken in
   core::ContactWrenches deviation{};
   for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
     deviation[leg].force = answer_.wrenches[leg].force - answer_.planned[leg].force;

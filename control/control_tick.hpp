@@ -65,6 +65,19 @@ class ControlTick {
   /// Hands over the next jump; it starts when the present one has landed, at once when standing.
   void offer(const core::JumpPlan& plan) noexcept;
 
+  /// Where the takeoff of a jump may be planned anew: its first knot that is at least `ahead` away
+  /// [s] and comes after the last one that was replaced, and the state that the body will probably
+  /// have there. Null while nothing pushes off, and where no such knot is left.
+  struct RestQuestion {
+    std::size_t knot = 0;
+    core::RobotState state;
+  };
+  [[nodiscard]] std::optional<RestQuestion> rest_question(double ahead) const noexcept;
+  /// Goes on by another plan of the same jump from a knot of the present one on.
+  /// @param rest Its clock starts at the knot.
+  /// @return false, and changes nothing, if that knot is no longer ahead.
+  bool replace_rest(const core::JumpPlan& rest, std::size_t knot) noexcept;
+
   /// The operator's wishes, after the phase table of JumpSupervisor; false = refused in this phase.
   /// Holding drops the next jump, calls off one that is not past its commit point, and otherwise
   /// waits for the landing. @pre tick() has run.
@@ -129,7 +142,9 @@ class ControlTick {
   core::JumpPlan next_;
   core::JumpPlan hop_plan_;  ///< Being made.
   bool has_next_ = false;
-  core::Stamp start_;  ///< Of the plan's clock, as commands see it.
+  core::Stamp start_;              ///< Of the plan's clock, as commands see it.
+  std::size_t replaced_knot_ = 0;  ///< The plan was planned anew from here on.
+  core::Stamp replaced_;           ///< The last time that this was done.
   bool started_ = false;
   core::RobotPhase last_phase_ = core::RobotPhase::stand;  ///< At the end of the last tick.
   bool phase_changed_ = false;

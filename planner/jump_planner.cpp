@@ -8,11 +8,11 @@
 #include <string>
 
 #include "planner/certificate.hpp"
+#include "planner/certified_plan.hpp"
 #include "planner/corrected_solver.hpp"
 #include "planner/ipopt_problem.hpp"
 #include "planner/jump_library.hpp"
 #include "planner/landing_phase.hpp"
-#include "planner/leg_certificate.hpp"
 #include "planner/lift_to_3d.hpp"
 #include "planner/planar_task.hpp"
 #include "planner/warm_start.hpp"
@@ -23,13 +23,6 @@ namespace {
 
 using core::Reason;
 using core::Refusal;
-
-/// A margin below zero by less is rounding of the solver.
-constexpr double kMarginTolerance = 1e-3;
-/// Joint motion re-integrated with the held torques may miss by so much, see `certify`.
-constexpr double kDenseViolationMax = 1e-3;
-/// The same of a solution of Ipopt, which nothing corrects between its knots.
-constexpr double kUncorrectedViolationMax = 0.10;
 
 // A jump of the library as it is. The terrain's smoothness allows as much in height.
 constexpr double kShiftMax = 0.03;         // of the landing, forward or back [m]
@@ -68,18 +61,6 @@ NonlinearProgram build_program(const PlanarModel& model, const PlanarTask& task,
   return {layout.size(), std::move(blocks)};
 }
 
-Refusal infeasible(const SolveOutcome& outcome, const PlanarTask& task, std::string_view limit) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "no motion found to %.3f m, height %.3f m: %s after %d iterations, largest "
-                "violation %.2g",
-                task.distance, task.height,
-                outcome.status == SolveStatus::iteration_limit ? "stopped" : "gave up",
-                outcome.iterations, outcome.violation);
-  const std::string by = limit.empty() ? "" : "; stopped by " + std::string(limit);
-  return {Reason::plan_infeasible, text + by};
-}
-
 /// The final stand is not a variable: where it is not clear of the ground no motion helps.
 std::optional<Refusal> blocked_stand(const PlanarModel& model, const PlanarTask& task) {
   const double leant = task.final_posture[model::kShank];
@@ -94,42 +75,9 @@ std::optional<Refusal> blocked_stand(const PlanarModel& model, const PlanarTask&
 }
 
 double violation_max(Solver solver) {
+  // Nothing corrects a solution of Ipopt between its knots.
+  constexpr double kUncorrectedViolationMax = 0.10;
   return solver == Solver::chain ? kDenseViolationMax : kUncorrectedViolationMax;
-}
-
-Refusal not_certified(const core::Certificate& certificate, Solver solver) {
-  const core::CertificateEntry& worst = certificate.binding();
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "%s has margin %.3f at %.3f s; largest dense violation %.3f (allowed %.3f)",
-                std::string(worst.name).c_str(), worst.margin, worst.time,
-                certificate.dense_max_violation, violation_max(solver));
-  return {Reason::certificate_refused, text};
-}
-
-bool is_certified(const core::Certificate& certificate, Solver solver) {
-  return certificate.binding().margin >= -kMarginTolerance &&
-         certificate.dense_max_violation <= violation_max(solver);
-}
-
-/// Fills certificate, peaks and knots of a plan whose target is set. @return why it is refused.
-std::optional<Refusal> certify_and_lift(const PlanarModel& model, const PlanarTask& task,
-                                        const SolvedMotion& solved, Solver solver,
-                                        core::JumpPlan& plan) {
-  const PlanarMotion& motion = solved.motion;
-  const CertifiedMotion certified = certify(model, task, motion);
-  plan.certificate = certified.certificate;
-  plan.certificate.max_violation = solved.outcome.violation;
-  plan.peaks = certified.peaks;
-  if (!is_certified(plan.certificate, solver)) return not_certified(plan.certificate, solver);
-  if (!lift_to_3d(model, motion, plan.target, plan)) {
-    return Refusal{Reason::out_of_reach, "a leg cannot reach so far to the side"};
-  }
-  if (!side_target(plan.target).is_straight()) {
-    certify_legs(model.robot, model.config.friction, plan);
-  }
-  if (!is_certified(plan.certificate, solver)) return not_certified(plan.certificate, solver);
-  return std::nullopt;
 }
 
 core::JumpPlan plan_for(const PlanRequest& request, const SolveOutcome& outcome) {
@@ -239,7 +187,7 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::finish(const Trial& trial,
   if (!is_acceptable(outcome)) return infeasible(outcome, task, obstacle);
   core::JumpPlan plan = plan_for(request, outcome);
   if (std::optional<Refusal> refusal =
-          certify_and_lift(model, task, solved, request.solver, plan)) {
+          certify_and_lift(model, task, solved, violation_max(request.solver), plan)) {
     obstacle = plan.certificate.binding().name;
     return *refusal;
   }
@@ -314,7 +262,7 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::by_library(const Trial& trial)
     motion.outcome.status = SolveStatus::solved;
     motion.motion = motion_of(*jump, trial.model, *task, layout);
     core::JumpPlan plan = plan_for(request, motion.outcome);
-    if (certify_and_lift(trial.model, *task, motion, Solver::chain, plan)) continue;
+    if (certify_and_lift(trial.model, *task, motion, kDenseViolationMax, plan)) continue;
     plan.iterations = iterations;
     plan.warm = true;
     return plan;

@@ -1,8 +1,8 @@
-/// Solves random targets by the chain solver, from the library of jumps as the planner does, and by
-/// Ipopt from the closed-form guess, on the same laws, and compares the optimal costs:
-/// planner_agreement [COUNT [SEED]], default 200 targets, seed 1. Targets that either does not
-/// solve are counted and left out. Where one finds a clearly better jump, they have ended in
-/// different local minima; those are listed.
+/// Solves random targets by the chain solver and by Ipopt, on the same laws, and compares the
+/// optimal costs: planner_agreement [COUNT [SEED]], default 200 targets that both solve, seed 1.
+/// The program has several local minima: the chain solver starts from the closed-form guess and
+/// from the nearest jumps of the library, and its cheapest counts; Ipopt starts from the same
+/// guess. Where one finds a clearly better jump it is listed. Fails if that is ever Ipopt.
 
 #include <algorithm>
 #include <array>
@@ -28,6 +28,8 @@ using namespace hopscotch::planner;  // NOLINT
 constexpr double kAgreement = 1e-4;  // of costs, relative
 /// Both stop so close to the optimum that what is left of it does not count.
 constexpr double kTolerance = 1e-5;
+/// Jumps of the library that the chain solver starts from.
+constexpr std::size_t kNeighbours = 9;
 
 std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -68,19 +70,24 @@ class Comparison {
         chain_better_, ipopt_better_);
   }
 
+  [[nodiscard]] int compared() const { return static_cast<int>(difference_.size()); }
+  [[nodiscard]] bool ipopt_was_better() const { return ipopt_better_ > 0; }
+
  private:
   [[nodiscard]] SolveOptions options() const {
     return {problems_.model.config.iterations_max, kTolerance};
   }
 
+  /// The cheapest of several local minima.
   [[nodiscard]] ChainOutcome by_chain(const PlanarTask& task, const ChainProblem& problem,
                                       const Eigen::VectorXd& guess) {
-    constexpr std::size_t kNeighbours = 2;
+    ChainOutcome best = chain_.solve(problem, guess, options());
     for (const KnownJump* near : library_.nearest(task, kNeighbours)) {
       const ChainOutcome outcome = chain_.solve_near(problem, near->solution, options());
-      if (outcome.status == SolveStatus::solved) return outcome;
+      if (outcome.status != SolveStatus::solved) continue;
+      if (best.status != SolveStatus::solved || outcome.cost < best.cost) best = outcome;
     }
-    return chain_.solve(problem, guess, options());
+    return best;
   }
 
   void note(const GridTarget& target, const ChainOutcome& chain, const SolveOutcome& ipopt) {
@@ -118,11 +125,11 @@ int main(int argc, char** argv) {
   std::uniform_int_distribution<std::size_t> start(0, 2);
   constexpr std::array<StartKind, 3> kStarts{StartKind::stand, StartKind::low, StartKind::moving};
   Comparison comparison(std::filesystem::path(HOPSCOTCH_SOURCE_DIR) / "config");
-  for (int i = 0; i < count; ++i) {
+  while (comparison.compared() < count) {
     const double ahead = distance(generator);
     const double up = height(generator);
     comparison.compare({ahead, up, kStarts[start(generator)]});
   }
   comparison.print();
-  return EXIT_SUCCESS;
+  return comparison.ipopt_was_better() ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -340,5 +340,31 @@ TEST(Scenario, AHardPushInFlightIsSeenAsAFall) {
   EXPECT_EQ(result.falls, 1);
 }
 
+/// The rest of a takeoff from where the robot is, at least 50 times a second.
+TEST(Replanning, OfATakeoffIsInTimeAndLandsAtTheTarget) {
+  constexpr double kRate = 50.0;  // [1/s]
+  RunRequest request = request_of(
+      sim::Scenario::load(std::string(kConfig) + "scenarios/flat-leaps.yaml"), Eyes::truth, 4711);
+  request.config.runtime.replanning = true;
+  request.jumps_max = 2;
+  LockstepRun run(request);
+  int replanned = 0;
+  int pushing_off = 0;  // ticks from the first jump's beginning on
+  while (run.step([&](const TickRecord& tick) {
+    replanned += tick.events.replanned ? 1 : 0;
+    const bool leaves = tick.status.plan_time > tick.plan.liftoff_time - 0.05;
+    pushing_off += core::is_pushing_off(tick.status.phase) && !leaves ? 1 : 0;
+  })) {
+  }
+  EXPECT_GE(replanned, kRate * 0.001 * pushing_off);
+  EXPECT_EQ(run.pipeline().late_results(), 0U);
+  const RunResult result = run.result();
+  EXPECT_EQ(result.falls, 0) << result.reason;
+  ASSERT_EQ(result.jumps.size(), 2U);
+  for (const JumpResult& jump : result.jumps) {
+    EXPECT_NEAR(jump.landing.distance, jump.target.distance, 0.03);
+  }
+}
+
 }  // namespace
 }  // namespace hopscotch::apps

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "core/jump_plan.hpp"
+#include "core/result.hpp"
+#include "planner/corrected_solver.hpp"
+#include "planner/planar_jump.hpp"
+
+namespace hopscotch::planner {
+
+/// Joint motion re-integrated with the held torques may miss by so much, see `certify`.
+inline constexpr double kDenseViolationMax = 1e-3;
+
+/// That no motion was found, after how much work.
+/// @param limit What stood in the way, in the words of the certificate; empty if unknown.
+[[nodiscard]] core::Refusal infeasible(const SolveOutcome& outcome, const PlanarTask& task,
+                                       std::string_view limit);
+
+/// Fills certificate, peaks and knots of a plan whose target is set.
+/// @param violation_max Allowed as `dense_max_violation`.
+/// @return why it is refused.
+[[nodiscard]] std::optional<core::Refusal> certify_and_lift(const PlanarModel& model,
+                                                            const PlanarTask& task,
+                                                            const SolvedMotion& solved,
+                                                            double violation_max,
+                                                            core::JumpPlan& plan);
+
+}  // namespace hopscotch::planner
