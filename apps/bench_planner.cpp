@@ -62,11 +62,12 @@ struct ReplanSamples {
   };
   static constexpr std::array kPushes{Push{5, 0.1}, Push{12, -0.1}, Push{18, 0.1}};
 
-  const BenchSetup& setup;
-  planner::Replanner replanner{setup.config.planner, setup.robot};
+  planner::Replanner replanner;
   std::vector<double> replan_ms;
   std::vector<double> iterations;
   int planned = 0;
+
+  explicit ReplanSamples(const BenchSetup& setup) : replanner(setup.config.planner, setup.robot) {}
 
   void replan(const planner::PlanRequest& request, const core::JumpPlan& plan,
               const planner::KnownJump& solution) {
@@ -151,7 +152,7 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
   PlannerSamples closed_form;
   PlannerSamples warm;
   PlannerSamples ipopt;
-  ReplanSamples replanned{setup};
+  ReplanSamples replanned(setup);
   IterationSamples iterations(setup);
   const std::vector<BenchTarget> targets = read_targets();
   for (std::size_t i = 0; i < targets.size(); ++i) {

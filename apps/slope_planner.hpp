@@ -28,8 +28,8 @@ class SlopePlanner {
   /// As planner::JumpPlanner::plan().
   core::Result<core::JumpPlan> plan(const planner::PlanRequest& request);
 
-  /// Of the last plan, for plans of its rest; null on slopes, where those would slide, and if it was
-  /// not solved.
+  /// Of the last plan, for plans of its rest; null on slopes, where those would slide, and if it
+  /// was not solved.
   [[nodiscard]] std::shared_ptr<const planner::KnownJump> solution() const;
 
   /// The friction that a plan to a target may count on, as if the ground were level [-].
