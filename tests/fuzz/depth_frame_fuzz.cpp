@@ -1,6 +1,7 @@
 // Any depth frame and robot state: the mapper takes it in or refuses it with a status, a refused
-// frame leaves the map as it was, and what the map calls observed is finite. Input: width, height,
-// which numbers are hostile (4 bytes), those numbers (8 bytes each), then pixels (4 bytes each).
+// frame leaves the map as it was, what the map calls observed is finite, and there is no landing
+// target unless a frame was taken in. Input: width, height, which numbers are hostile (4 bytes),
+// those numbers (8 bytes each), then pixels (4 bytes each).
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -8,11 +9,13 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "core/check.hpp"
+#include "footstep/landing_selector.hpp"
 #include "model/robot_parameters.hpp"
 #include "perception/one_step.hpp"
 #include "perception/terrain_mapper.hpp"
@@ -43,14 +46,30 @@ class Input {
 struct Setup {
   model::RobotParameters robot;
   perception::PerceptionConfig config;
+  footstep::LandingSelector selector;
+};
+
+/// What was fed, told at the end.
+struct Counts {
+  long frames = 0;
+  long full = 0;        ///< Of 160x120 pixels or more.
+  long full_fused = 0;  ///< Of these taken into the map.
+  long targets = 0;
+
+  ~Counts() {
+    std::cout << frames << " frames, " << full << " of 160x120 or more, " << full_fused
+              << " of these fused; " << targets << " targets\n";
+  }
 };
 
 const Setup& setup() {
   static const Setup kSetup = [] {
     const std::filesystem::path config = std::filesystem::path(HOPSCOTCH_SOURCE_DIR) / "config";
     const core::ConfigReader tuning = core::ConfigReader::from_file(config / "hopscotch.yaml");
-    return Setup{model::RobotParameters::load(config / "robots" / "hector.yaml"),
-                 perception::PerceptionConfig::load(tuning.section("perception"))};
+    const auto robot = model::RobotParameters::load(config / "robots" / "hector.yaml");
+    return Setup{robot, perception::PerceptionConfig::load(tuning.section("perception")),
+                 footstep::LandingSelector(
+                     footstep::FootstepConfig::load(tuning.section("footstep")), robot)};
   }();
   return kSetup;
 }
@@ -72,23 +91,42 @@ struct Case {
   core::RobotState state = standing();
 };
 
-/// Five times as wide and high, up to 160x120: each pixel becomes a square.
-void enlarge(core::DepthFrame& frame) {
-  constexpr int kTimes = 5;
+/// Between pixels of a small image: on a plane between four readings, else the nearest.
+float between(const std::vector<float>& small, const core::CameraIntrinsics& lens, double u,
+              double v) {
+  const auto at = [&](int x, int y) {
+    const int column = std::min(x, lens.width - 1);
+    const int row = std::min(y, lens.height - 1);
+    return small[static_cast<std::size_t>(row * lens.width + column)];
+  };
+  const int u0 = static_cast<int>(u);
+  const int v0 = static_cast<int>(v);
+  const float corners[] = {at(u0, v0), at(u0 + 1, v0), at(u0, v0 + 1), at(u0 + 1, v0 + 1)};
+  const bool readings = std::all_of(std::begin(corners), std::end(corners),
+                                    [](float z) { return std::isnormal(z) && z > 0.0F; });
+  if (!readings) return corners[0];
+  const double right = u - u0;
+  const double down = v - v0;
+  // On a plane the inverse of the depth is linear in the pixels.
+  return static_cast<float>(1.0 /
+                            ((1.0 - down) * ((1.0 - right) / corners[0] + right / corners[1]) +
+                             down * ((1.0 - right) / corners[2] + right / corners[3])));
+}
+
+/// So many times as wide and high.
+void enlarge(core::DepthFrame& frame, int times) {
   core::CameraIntrinsics& lens = frame.intrinsics;
   if (lens.width <= 0 || lens.height <= 0 || lens.width > 32 || lens.height > 24) return;
-  const std::vector<float> small = std::move(frame.depth);
-  const int small_width = lens.width;
-  lens.width *= kTimes;
-  lens.height *= kTimes;
-  for (double* const number : {&lens.fx, &lens.fy, &lens.cx, &lens.cy}) *number *= kTimes;
-  frame.depth.clear();
-  for (int v = 0; v < lens.height; ++v) {
-    for (int u = 0; u < lens.width; ++u) {
-      const int at = v / kTimes * small_width + u / kTimes;
-      frame.depth.push_back(small[static_cast<std::size_t>(at)]);
+  std::vector<float> large;
+  for (int v = 0; v < times * lens.height; ++v) {
+    for (int u = 0; u < times * lens.width; ++u) {
+      large.push_back(between(frame.depth, lens, 1.0 * u / times, 1.0 * v / times));
     }
   }
+  frame.depth = std::move(large);
+  lens.width *= times;
+  lens.height *= times;
+  for (double* const number : {&lens.fx, &lens.fy, &lens.cx, &lens.cy}) *number *= times;
 }
 
 Case make_case(Input& input) {
@@ -127,8 +165,10 @@ Case make_case(Input& input) {
   while (!input.empty()) result.frame.depth.push_back(input.take<float>());
   const int pixels = std::max(0, lens.width) * std::max(0, lens.height);
   if (!wrong_size) result.frame.depth.resize(static_cast<std::size_t>(pixels), 0.8F);
+  // To 160x120, or to the 320x240 that targets take.
   const bool to_full_size = (hostile >> 30U & 1U) != 0;
-  if (to_full_size && !wrong_size) enlarge(result.frame);
+  const bool to_double_size = (hostile >> 29U & 1U) != 0;
+  if (to_full_size && !wrong_size) enlarge(result.frame, to_double_size ? 10 : 5);
   return result;
 }
 
@@ -153,6 +193,18 @@ void check_map(const core::TerrainMap& map) {
   }
 }
 
+/// Places are told with a probability, and none at all when no frame could be used.
+bool check_targets(const core::TerrainMap& map, const core::OneStepTerrain& terrain, bool fused) {
+  const core::TargetChoice choice = setup().selector.choose({map, terrain}, standing(), {});
+  HOPSCOTCH_CHECK(fused || !choice.target);
+  for (std::size_t i = 0; i < choice.ranked_count; ++i) {
+    const double probability = choice.ranked[i].safe_probability;
+    HOPSCOTCH_CHECK(std::isfinite(choice.ranked[i].distance));
+    HOPSCOTCH_CHECK(probability >= 0.0 && probability <= 1.0);
+  }
+  return choice.target.has_value();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -160,12 +212,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Case test = make_case(input);
   perception::TerrainMapper mapper(setup().config, setup().robot);
   HOPSCOTCH_CHECK(mapper.anchor_support(standing()) == perception::MapStatus::fused);
+  static Counts counts;
+  bool fused = false;
   constexpr int kFrames = 3;  // more than make a cell observed
   for (int i = 0; i < kFrames; ++i) {
     const core::TerrainMap before = mapper.map();
     test.frame.stamp = test.frame.stamp.after(0.033);
     const perception::MapStatus status = mapper.integrate(test.frame, test.state);
     if (status != perception::MapStatus::fused) HOPSCOTCH_CHECK(same_map(before, mapper.map()));
+    fused = fused || status == perception::MapStatus::fused;
+    const bool full = test.frame.depth.size() >= std::size_t{160 * 120};
+    ++counts.frames;
+    counts.full += full ? 1 : 0;
+    counts.full_fused += full && status == perception::MapStatus::fused ? 1 : 0;
     check_map(mapper.map());
   }
   const perception::StancePose stance =
@@ -175,5 +234,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   HOPSCOTCH_CHECK(terrain.coverage >= 0.0 && terrain.coverage <= 1.0);
   HOPSCOTCH_CHECK(terrain.edge_count <= core::OneStepTerrain::kMaxFeatures);
   HOPSCOTCH_CHECK(terrain.gap_count <= core::OneStepTerrain::kMaxFeatures);
+  counts.targets += check_targets(mapper.map(), terrain, fused) ? 1 : 0;
   return 0;
 }
