@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -45,6 +46,34 @@ void line(cv::Mat& picture, const Projection& project, const Vector3d& from, con
   if (a && b) cv::line(picture, *a, *b, colour, 2, cv::LINE_AA);
 }
 
+/// Right of a place, with a dark rim: it is read on any ground.
+void label(cv::Mat& picture, const cv::Point& place, const std::string& text,
+           const cv::Scalar& colour) {
+  constexpr double kSize = 0.4;
+  const cv::Point start = place + cv::Point(6, 4);
+  cv::putText(picture, text, start, cv::FONT_HERSHEY_SIMPLEX, kSize, cv::Scalar::all(0), 3,
+              cv::LINE_AA);
+  cv::putText(picture, text, start, cv::FONT_HERSHEY_SIMPLEX, kSize, colour, 1, cv::LINE_AA);
+}
+
+std::string metres(double value) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%.2f m", value);
+  return text;
+}
+
+/// What an edge is and how high its step.
+std::string name_of(const core::TerrainEdge& edge) {
+  const std::string step = std::isfinite(edge.step) ? " " + metres(edge.step) : "";
+  switch (edge.kind) {
+    case core::EdgeKind::up: return "up" + step;
+    case core::EdgeKind::down: return "down" + step;
+    case core::EdgeKind::gap_near: return "ends";
+    case core::EdgeKind::gap_far: return "begins" + step;
+  }
+  return "";
+}
+
 /// Height of the profile at x, zero where nothing is known.
 double height_at(const core::TerrainProfile& profile, double x) {
   const double mean = profile.mean[static_cast<std::size_t>(core::TerrainProfile::sample(x))];
@@ -63,6 +92,8 @@ void draw_edges(cv::Mat& picture, const Projection& project, const TerrainReport
         up ? kUpColour : (edge.kind == core::EdgeKind::down ? kDownColour : kGapColour);
     line(picture, project, {edge.x, kEdgeHalfWidth, height}, {edge.x, -kEdgeHalfWidth, height},
          colour);
+    const auto right = project({edge.x, -kEdgeHalfWidth, height});
+    if (right) label(picture, *right, name_of(edge), colour);
     if (edge.kind != core::EdgeKind::gap_near) level += step;
   }
 }
@@ -82,12 +113,17 @@ void draw_soles(cv::Mat& picture, const Projection& project, const core::RankedT
 
 void draw_choice(cv::Mat& picture, const Projection& project, const TerrainReport& report) {
   const core::TargetChoice& choice = report.choice;
+  core::Reason told = core::Reason::none;  // a reason is written at the first of its places
   for (std::size_t i = 0; i < choice.rejected_count; ++i) {
-    const double x = choice.rejected[i].distance;
+    const core::RejectedTarget& rejected = choice.rejected[i];
+    const double x = rejected.distance;
     const auto place = project({x, 0.0, height_at(report.terrain.profile, x)});
-    if (place) {
-      cv::drawMarker(picture, *place, kRejectedColour, cv::MARKER_TILTED_CROSS, 7, 1, cv::LINE_AA);
+    if (!place) continue;
+    cv::drawMarker(picture, *place, kRejectedColour, cv::MARKER_TILTED_CROSS, 7, 1, cv::LINE_AA);
+    if (rejected.why != told) {
+      label(picture, *place, std::string(core::reason_code(rejected.why)), kRejectedColour);
     }
+    told = rejected.why;
   }
   for (std::size_t i = choice.ranked_count; i > 0; --i) {
     draw_soles(picture, project, choice.ranked[i - 1], kTargetColour);
@@ -96,6 +132,11 @@ void draw_choice(cv::Mat& picture, const Projection& project, const TerrainRepor
     draw_soles(picture, project,
                {.distance = choice.target->distance, .height = choice.target->height},
                kChosenColour);
+    const auto beside = project({choice.target->distance, -kEdgeHalfWidth, choice.target->height});
+    char text[48];
+    std::snprintf(text, sizeof text, "%.2f m, safe %.4f", choice.target->distance,
+                  choice.target->safe_probability);
+    if (beside) label(picture, *beside, text, kChosenColour);
   }
 }
 
@@ -111,6 +152,32 @@ std::pair<float, float> height_range(const core::TerrainMap& map) {
   const float high = heights[heights.size() - 1 - heights.size() / 50];
   constexpr float kLeast = 0.05F;  // level ground is one colour, not a picture of its noise
   return {low, std::max(high, low + kLeast)};
+}
+
+/// A line every half metre ahead of the soles, and what the colours mean.
+void draw_scales(cv::Mat& picture, const Projection& project, double low, double high) {
+  constexpr double kTick = 0.5;  // [m]
+  constexpr int kTicks = 8;
+  constexpr int kTickLength = 12;  // [pixel]
+  const cv::Scalar white = cv::Scalar::all(255);
+  for (int i = 0; i <= kTicks; ++i) {
+    const auto place = project({i * kTick, 0.0, 0.0});
+    if (!place || place->y < 0 || place->y >= picture.rows) continue;
+    cv::line(picture, {0, place->y}, {kTickLength, place->y}, white, 1);
+    label(picture, {kTickLength, place->y}, metres(i * kTick), white);
+  }
+  constexpr int kKeyHeight = 120;
+  constexpr int kKeyWidth = 14;
+  const cv::Rect where(picture.cols - 90, 16, kKeyWidth, kKeyHeight);
+  if (where.x < 0 || where.y + where.height > picture.rows) return;
+  cv::Mat grey(kKeyHeight, kKeyWidth, CV_8U);
+  for (int row = 0; row < kKeyHeight; ++row) grey.row(row) = 255 - 255 * row / (kKeyHeight - 1);
+  cv::Mat colours;
+  cv::applyColorMap(grey, colours, cv::COLORMAP_VIRIDIS);
+  colours.copyTo(picture(where));
+  cv::rectangle(picture, where, white, 1);
+  label(picture, {where.x + kKeyWidth, where.y + 4}, metres(high), white);
+  label(picture, {where.x + kKeyWidth, where.y + kKeyHeight - 4}, metres(low), white);
 }
 
 void save(const std::filesystem::path& file, const cv::Mat& picture) {
@@ -155,6 +222,7 @@ void draw_map(const std::filesystem::path& file, const core::TerrainMap& map,
     return cv::Point(static_cast<int>(kScale * (map.size_y - across)),
                      static_cast<int>(kScale * (map.size_x - along)));
   };
+  draw_scales(picture, project, low - report.terrain.p_WS.z(), high - report.terrain.p_WS.z());
   draw_edges(picture, project, report);
   draw_choice(picture, project, report);
   save(file, picture);

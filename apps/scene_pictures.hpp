@@ -9,9 +9,10 @@
 
 namespace hopscotch::apps {
 
-/// Draws the map from above: height by colour, hidden ground dark grey, unseen ground black, edges
-/// across the foot tracks, ranked targets as soles (the chosen one white), rejected places as
-/// crosses.
+/// Draws the map from above, half metres ahead of the soles at its left: height above them by
+/// colour, hidden ground dark grey, unseen ground black, edges across the foot tracks with kind and
+/// step, ranked targets as soles (the chosen one white, with its distance and probability),
+/// rejected places as crosses, a reason at the first of its places.
 /// @throws std::runtime_error naming the file if it cannot be written.
 void draw_map(const std::filesystem::path& file, const core::TerrainMap& map,
               const TerrainReport& report);
