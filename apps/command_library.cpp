@@ -64,7 +64,7 @@ void add_library_command(CLI::App& app, Action& action) {
   command->footer(
       "The planner starts from these jumps what it cannot solve otherwise, and falls back on "
       "them.\n"
-      "Five minutes. Example: hopscotch library --robot hector");
+      "Nine minutes. Example: hopscotch library --robot hector");
   const auto options = std::make_shared<LibraryOptions>();  // shared with the action below
   command->add_option("--robot", options->robot, "Robot file")->capture_default_str();
   command->add_option("--config", options->config, "Tuning")->capture_default_str();

@@ -8,12 +8,14 @@
 
 #include "apps/commands.hpp"
 #include "apps/flight_trial.hpp"
+#include "apps/html.hpp"
 #include "apps/installation.hpp"
 #include "apps/plan_json.hpp"
 #include "apps/program_config.hpp"
 #include "apps/shipped_jumps.hpp"
 #include "apps/stopwatch.hpp"
 #include "apps/text_file.hpp"
+#include "apps/video.hpp"
 #include "core/config_reader.hpp"
 #include "planner/jump_planner.hpp"
 #include "planner/nearest_target.hpp"
@@ -35,6 +37,7 @@ struct PlanOptions {
   bool fly = false;
   std::filesystem::path config = config_directory() / "hopscotch.yaml";
   std::filesystem::path out;
+  std::filesystem::path video;
 };
 
 void say_plan(const core::JumpPlan& plan, const PlanContext& context) {
@@ -134,6 +137,23 @@ ExitStatus refuse(PlanSession& session, const PlanOptions& options, const core::
   return ExitStatus::answer_is_no;
 }
 
+/// With a film where one is wanted.
+FlownJump fly(const FlightTrial& trial, const std::filesystem::path& video) {
+  if (video.empty()) return fly(trial);
+  Film film(flight_scene(trial), video);
+  const std::string title =
+      fixed(trial.step.distance, 2) + " m ahead, " + fixed(trial.step.height, 2) + " m up   ";
+  int frame = 0;
+  const FlownJump flown = fly(trial, [&](const core::RobotState& state) {
+    const double time = state.stamp.seconds();
+    if (time < frame * Film::kStep) return;
+    film.add(state, title + fixed(time, 2) + " s");
+    ++frame;
+  });
+  film.finish();
+  return flown;
+}
+
 ExitStatus plan(PlanOptions options) {
   planner::StepRequest& step = options.step;
   if (!std::isfinite(step.distance + step.height + step.lateral + step.yaw)) {
@@ -154,7 +174,9 @@ ExitStatus plan(PlanOptions options) {
   const core::Result<core::JumpPlan> result = session.solve();
   if (!result) return refuse(session, options, result.error());
   PlanContext& context = session.context;
-  if (options.fly) context.flown = fly({*result, step, session.config, session.robot});
+  if (options.fly) {
+    context.flown = fly({*result, step, session.config, session.robot}, options.video);
+  }
   if (!options.out.empty()) {
     write_file_atomically(options.out, plan_trajectory_json(*result, context));
   }
@@ -197,8 +219,9 @@ void add_plan_command(CLI::App& app, Action& action) {
                     "Each solve as the first: from the library or, without a jump close by, from "
                     "the closed form");
   command->add_option("--config", options->config, "Tuning")->capture_default_str();
-  command->add_flag("--fly", options->fly,
-                    "Fly it in MuJoCo, on the true state, and say how it went");
+  CLI::Option* const fly = command->add_flag(
+      "--fly", options->fly, "Fly it in MuJoCo, on the true state, and say how it went");
+  command->add_option("--video", options->video, "Write a film of the flight (MP4)")->needs(fly);
   command->add_option("--out", options->out, "Write the trajectory (JSON)");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([&action, options] { action = [options] { return plan(*options); }; });

@@ -13,6 +13,7 @@
 #include "control/wrench_mpc.hpp"
 #include "sim/judge.hpp"
 #include "sim/mujoco_plant.hpp"
+#include "sim/scene_builder.hpp"
 
 namespace hopscotch::apps {
 
@@ -76,8 +77,11 @@ class TrialRun {
         static_cast<std::size_t>(trial.config.control.wrench_mpc.horizon);
   }
 
-  FlownJump run() {
-    while (step()) {
+  FlownJump run(const std::function<void(const core::RobotState&)>& observe) {
+    bool goes_on = true;
+    while (goes_on) {
+      goes_on = step();
+      if (observe) observe(truth_.state);
     }
     return result();
   }
@@ -152,11 +156,16 @@ class TrialRun {
 
 }  // namespace
 
-FlownJump fly(const FlightTrial& trial) {
+FlownJump fly(const FlightTrial& trial,
+              const std::function<void(const core::RobotState&)>& observe) {
   const std::optional<model::StandPose> pose =
       model::stand_pose(trial.robot, trial.config.stand_posture);
   if (!pose) throw core::ConfigError("stand_posture: " + trial.robot.name + " cannot stand so");
-  return TrialRun(trial, ground_of(trial), *pose).run();
+  return TrialRun(trial, ground_of(trial), *pose).run(observe);
+}
+
+std::string flight_scene(const FlightTrial& trial) {
+  return sim::scene_mjcf(trial.robot, ground_of(trial).true_terrain());
 }
 
 }  // namespace hopscotch::apps

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include "apps/program_config.hpp"
 #include "apps/run_result.hpp"
 #include "core/jump_plan.hpp"
@@ -29,6 +32,11 @@ struct FlownJump {
 /// against what the physics of MuJoCo makes of it.
 /// @throws core::ConfigError if the robot cannot stand as configured, or the ground of `step` is
 /// none.
-[[nodiscard]] FlownJump fly(const FlightTrial& trial);
+/// @param observe Sees the true state of each millisecond; may be empty.
+[[nodiscard]] FlownJump fly(const FlightTrial& trial,
+                            const std::function<void(const core::RobotState&)>& observe = {});
+
+/// The world that `fly` simulates, as MuJoCo reads it. @throws as `fly`.
+[[nodiscard]] std::string flight_scene(const FlightTrial& trial);
 
 }  // namespace hopscotch::apps

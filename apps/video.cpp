@@ -30,25 +30,42 @@ std::string caption_at(const RunRecord& run, double time) {
 
 }  // namespace
 
-void write_video(const RunFolder& folder) {
-  constexpr VideoEncoder::Format kFormat{.width = 960, .height = 540, .rate = 30};
-  constexpr double kStep = 1.0 / kFormat.rate;  // real time
-  const RunRecord run = load_run(folder);
-  sim::SceneRenderer renderer(read_file(folder.scene()), kFormat.width, kFormat.height,
-                              sim::Quality::film);
-  VideoEncoder encoder(folder.video(), kFormat);
+struct Film::Studio {
+  static constexpr VideoEncoder::Format kFormat{.width = 960, .height = 540, .rate = 30};
+  sim::SceneRenderer renderer;
+  VideoEncoder encoder;
   FollowingCamera camera;
   sim::RgbImage image;
+
+  Studio(const std::string& mjcf, const std::filesystem::path& file)
+      : renderer(mjcf, kFormat.width, kFormat.height, sim::Quality::film), encoder(file, kFormat) {}
+};
+
+Film::Film(const std::string& mjcf, const std::filesystem::path& file)
+    : studio_(std::make_unique<Studio>(mjcf, file)) {}
+Film::~Film() = default;
+
+void Film::add(const core::RobotState& state, const std::string& caption) {
+  sim::RgbImage& image = studio_->image;
+  studio_->renderer.render(state, studio_->camera.view(state, kStep), image);
+  cv::Mat picture = as_matrix(image);
+  write_caption(picture, caption);
+  studio_->encoder.add(image.pixels);
+}
+
+void Film::finish() {
+  studio_->encoder.finish();
+}
+
+void write_video(const RunFolder& folder) {
+  const RunRecord run = load_run(folder);
+  Film film(read_file(folder.scene()), folder.video());
   const double end = run.moments.empty() ? -1.0 : run.moments.back().time;
-  for (int frame = 0; frame * kStep <= end; ++frame) {
-    const double time = frame * kStep;
-    const core::RobotState& state = run.moment_at(time).state;
-    renderer.render(state, camera.view(state, kStep), image);
-    cv::Mat picture = as_matrix(image);
-    write_caption(picture, caption_at(run, time));
-    encoder.add(image.pixels);
+  for (int frame = 0; frame * Film::kStep <= end; ++frame) {
+    const double time = frame * Film::kStep;
+    film.add(run.moment_at(time).state, caption_at(run, time));
   }
-  encoder.finish();
+  film.finish();
 }
 
 }  // namespace hopscotch::apps

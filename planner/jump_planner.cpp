@@ -12,6 +12,7 @@
 #include "planner/corrected_solver.hpp"
 #include "planner/ipopt_problem.hpp"
 #include "planner/jump_library.hpp"
+#include "planner/jump_program.hpp"
 #include "planner/landing_phase.hpp"
 #include "planner/lift_to_3d.hpp"
 #include "planner/planar_task.hpp"
@@ -50,15 +51,6 @@ PlannerConfig with_room_for_one_leg(PlannerConfig config) {
     *share *= kSideShare;
   }
   return config;
-}
-
-NonlinearProgram build_program(const PlanarModel& model, const PlanarTask& task,
-                               const DecisionLayout& layout) {
-  BlockList blocks;
-  add_takeoff(model, task, layout, blocks);
-  add_flight(model, task, layout, blocks);
-  add_landing(model, task, layout, blocks);
-  return {layout.size(), std::move(blocks)};
 }
 
 /// The final stand is not a variable: where it is not clear of the ground no motion helps.
@@ -166,7 +158,7 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::plan_by_ipopt(const Trial& tri
   const bool warm = request.guess == StartGuess::previous && last_by_ipopt.size() > 0;
   const StartPoint start{warm ? last_by_ipopt : kinematic_guess(model, task, layout)};
   const SolveOutcome solved = solve_with_ipopt(
-      build_program(model, task, layout), decision_bounds(model, task, layout),
+      jump_program(model, task, layout), decision_bounds(model, task, layout),
       decision_sizes(layout), start, {model.config.iterations_max, model.config.tolerance});
   core::Result<core::JumpPlan> plan =
       finish(trial, {solved, motion_from_decision(model, task, layout, solved.x)});

@@ -9,9 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "planner/corrected_solver.hpp"
+#include "planner/ipopt_problem.hpp"
 #include "planner/jump_planner.hpp"
+#include "planner/jump_program.hpp"
 #include "planner/planar_task.hpp"
 #include "planner/step_target.hpp"
+#include "planner/warm_start.hpp"
 
 namespace hopscotch::planner {
 
@@ -64,7 +68,8 @@ class Compiler {
 
   /// Finds a jump for a cell that has none. @return whether it did.
   bool solve(Cell& cell) {
-    return (is_solved(request(cell, cell.distance, cell.height)) || walk_to(cell)) && keep(cell);
+    return (is_solved(request(cell, cell.distance, cell.height)) || walk_to(cell)) &&
+           keep(planner_, cell);
   }
 
   /// Looks for a cheaper jump than the cell has: solutions are local, and those of neighbours may
@@ -76,9 +81,31 @@ class Compiler {
     if (!task) return false;
     bool better = false;
     for (const KnownJump* from : library_->nearest(*task, kNeighbours)) {
-      better = (walk(cell, from->distance, from->height, 1) && keep(cell)) || better;
+      better = (walk(cell, from->distance, from->height, 1) && keep(planner_, cell)) || better;
     }
     return better;
+  }
+
+  /// Looks for a cheaper jump, or one at all, from where Ipopt ends: from the same closed-form
+  /// guess it takes other ways. @return whether there was one.
+  bool improve_by_ipopt(Cell& cell) {
+    PlanRequest wanted = request(cell, cell.distance, cell.height);
+    const core::Result<PlanarTask> task = planar_task(model_, wanted);
+    if (!task) return false;
+    const DecisionLayout layout(model_.config.steps);
+    const SolveOutcome outcome = solve_with_ipopt(
+        jump_program(model_, *task, layout), decision_bounds(model_, *task, layout),
+        decision_sizes(layout), {kinematic_guess(model_, *task, layout)},
+        {model_.config.iterations_max, model_.config.tolerance});
+    if (outcome.status != SolveStatus::solved) return false;
+    CorrectedSolver solver(layout);
+    const SolvedMotion solved = solver.solve(model_, *task, outcome.x);
+    if (!is_acceptable(solved.outcome)) return false;
+    auto alone = std::make_shared<JumpLibrary>(robot_.name, model_.config.steps);
+    alone->add(solver.known(*task, solved));
+    JumpPlanner near(model_.config, robot_, alone);
+    if (!near.plan(wanted) || near.rung() != PlanRung::neighbour) return false;
+    return keep(near, cell);
   }
 
  private:
@@ -88,12 +115,12 @@ class Compiler {
     return {.start = cell.start, .target = step_target(step, robot_), .final_posture = posture_};
   }
 
-  /// The planner's last jump, where it is clearly cheaper than the cell's.
-  bool keep(Cell& cell) const {
+  /// A planner's last jump, where it is clearly cheaper than the cell's.
+  static bool keep(const JumpPlanner& planner, Cell& cell) {
     constexpr double kCheaper = 1e-4;  // relative
-    if (planner_.cost() > (1.0 - kCheaper) * cell.cost) return false;
-    cell.jump = *planner_.last();
-    cell.cost = planner_.cost();
+    if (planner.cost() > (1.0 - kCheaper) * cell.cost) return false;
+    cell.jump = *planner.last();
+    cell.cost = planner.cost();
     return true;
   }
 
@@ -162,6 +189,7 @@ JumpLibrary compile_library(const PlannerConfig& config, const model::RobotParam
     for (Cell& cell : cells) {
       progress(++done / rounds);
       const bool solving = pass < kPasses;
+      if (pass == kPasses) changes += static_cast<int>(compiler.improve_by_ipopt(cell));
       if (cell.jump.has_value() == solving) continue;
       changes += static_cast<int>(solving ? compiler.solve(cell) : compiler.improve(cell));
     }

@@ -7,6 +7,7 @@
 #include "model/stand_posture.hpp"
 #include "planner/decision_layout.hpp"
 #include "planner/ipopt_problem.hpp"
+#include "planner/jump_program.hpp"
 #include "planner/landing_phase.hpp"
 #include "planner/planar_task.hpp"
 #include "planner/step_target.hpp"
@@ -49,13 +50,8 @@ struct GridProblems {
 
   [[nodiscard]] SolveOutcome by_ipopt(const PlanarTask& task, const Eigen::VectorXd& start,
                                       const SolveOptions& options) const {
-    BlockList blocks;
-    add_takeoff(model, task, layout, blocks);
-    add_flight(model, task, layout, blocks);
-    add_landing(model, task, layout, blocks);
-    return solve_with_ipopt({layout.size(), std::move(blocks)},
-                            decision_bounds(model, task, layout), decision_sizes(layout), {start},
-                            options);
+    return solve_with_ipopt(jump_program(model, task, layout), decision_bounds(model, task, layout),
+                            decision_sizes(layout), {start}, options);
   }
 
   model::RobotParameters robot;

@@ -49,6 +49,7 @@ TEST_F(CommandLine, BadUsageIsStatusTwo) {
   EXPECT_EQ(call("run").status, 2);
   EXPECT_EQ(call("run x.yaml --perception eyes").status, 2);
   EXPECT_EQ(call("plan --distance far").status, 2);
+  EXPECT_EQ(call("plan --distance 0.3 --video film.mp4").status, 2);  // of a flight, not of a plan
   EXPECT_EQ(call("target").status, 2);
   EXPECT_EQ(call("target 0.3 --clear").status, 2);
   EXPECT_EQ(call("target far").status, 2);

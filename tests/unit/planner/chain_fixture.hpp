@@ -6,20 +6,11 @@
 #include <vector>
 
 #include "planner/chain_problem.hpp"
-#include "planner/nonlinear_program.hpp"
+#include "planner/jump_program.hpp"
 #include "planner/warm_start.hpp"
 #include "tests/unit/planner/planner_fixture.hpp"
 
 namespace hopscotch::planner::testing_support {
-
-inline NonlinearProgram program_of(const PlanarModel& model, const PlanarTask& task,
-                                   const DecisionLayout& layout) {
-  BlockList blocks;
-  add_takeoff(model, task, layout, blocks);
-  add_flight(model, task, layout, blocks);
-  add_landing(model, task, layout, blocks);
-  return {layout.size(), std::move(blocks)};
-}
 
 /// Where a row of the program lives in the arrays of the chain.
 struct RowPlace {
@@ -116,7 +107,7 @@ class ChainTest : public testing::TestWithParam<std::pair<double, double>> {
   PlanarTask task_ = task(model_, GetParam().first, GetParam().second);
   ChainProblem problem_{model_, task_, layout_};
   ChainTerms terms_{layout_.steps()};
-  NonlinearProgram program_ = program_of(model_, task_, layout_);
+  NonlinearProgram program_ = jump_program(model_, task_, layout_);
   RowPlaces places_{problem_};
 };
 

@@ -32,7 +32,7 @@ TEST_P(ChainSolverTest, FindsTheOptimumThatIpoptFinds) {
   const SolvedChain chain(GetParam().first, GetParam().second, kTight);
   ASSERT_EQ(chain.outcome.status, SolveStatus::solved);
   const SolveOutcome reference = solve_with_ipopt(
-      program_of(chain.model, chain.task, chain.layout),
+      jump_program(chain.model, chain.task, chain.layout),
       decision_bounds(chain.model, chain.task, chain.layout), decision_sizes(chain.layout),
       {kinematic_guess(chain.model, chain.task, chain.layout)}, {200, 1e-7});
   ASSERT_EQ(reference.status, SolveStatus::solved);
@@ -50,7 +50,7 @@ TEST_P(ChainSolverTest, OnLineToleranceCostsLittle) {
 /// Stationarity, feasibility, signs and complementarity by the derivatives of the blocks.
 TEST_P(ChainSolverTest, SatisfiesTheOptimalityConditionsOfTheBlocks) {
   const SolvedChain chain(GetParam().first, GetParam().second, kTight);
-  const NonlinearProgram program = program_of(chain.model, chain.task, chain.layout);
+  const NonlinearProgram program = jump_program(chain.model, chain.task, chain.layout);
   const RowPlaces places(chain.problem);
   const Eigen::VectorXd x = chain.solver.x();
   Eigen::VectorXd rows;
