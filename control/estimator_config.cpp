@@ -47,11 +47,21 @@ ContactConfig load_contact(const core::ConfigReader& section) {
   return c;
 }
 
+FlightCheckConfig load_flight_check(const core::ConfigReader& section) {
+  FlightCheckConfig c;
+  c.settle_time = section.number("settle_time_s", Range::closed(0.0, 0.2));
+  c.watch_time = section.number("watch_time_s", Range::closed(0.005, 0.2));
+  c.speed_max = section.number("speed_max_mps", Range::positive());
+  section.finish();
+  return c;
+}
+
 }  // namespace
 
 EstimatorConfig EstimatorConfig::load(const core::ConfigReader& section) {
   EstimatorConfig config;
   config.filter = load_filter(section.section("filter"));
+  config.flight_check = load_flight_check(section.section("flight_check"));
   config.contact = load_contact(section.section("contact"));
   section.finish();
   return config;

@@ -40,8 +40,16 @@ struct ContactConfig {
   double leave_time = 0.0;   ///< Before lift-off, from which on feet are not trusted [s].
 };
 
+/// When a flight is believed to have gone wrong: section `control.estimator.flight_check`.
+struct FlightCheckConfig {
+  double settle_time = 0.0;  ///< After touchdown, until the soles have come to rest [s].
+  double watch_time = 0.0;   ///< For so long they are watched then [s].
+  double speed_max = 0.0;    ///< Vertical speed off by so much is no noise [m/s].
+};
+
 struct EstimatorConfig {
   FilterConfig filter;
+  FlightCheckConfig flight_check;
   ContactConfig contact;
 
   static EstimatorConfig load(const core::ConfigReader& section);

@@ -169,6 +169,19 @@ FootVerdict InvariantFilter::correct_foot(core::Leg leg, const SeenFoot& seen) n
   return FootVerdict::fits;
 }
 
+void InvariantFilter::doubt_flight(const FlightError& error) noexcept {
+  // A constant error of the accelerometer, in flight; the speed that it left went on after it. The
+  // soles are where the legs say they are below the trunk, and so as wrong as it is.
+  const double height = error.rise_speed * (0.5 * error.flown + error.stood);
+  Eigen::Vector<double, kSize> wrong = Eigen::Vector<double, kSize>::Zero();
+  wrong(kVelocity + 2) = error.rise_speed;
+  wrong(kPosition + 2) = height;
+  for (const core::Leg leg : core::kAllLegs) {
+    if (stands(leg)) wrong(sole_block(leg) + 2) = height;
+  }
+  covariance_.noalias() += wrong * wrong.transpose();
+}
+
 bool InvariantFilter::correct_height(core::Leg leg, double height) noexcept {
   const int sole = sole_block(leg);
   const Vector3d& p_WF = state_.p_WF[core::index(leg)];

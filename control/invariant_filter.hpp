@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "control/estimator_config.hpp"
+#include "control/flight_check.hpp"
 #include "core/robot_layout.hpp"
 
 namespace hopscotch::control {
@@ -65,6 +66,11 @@ class InvariantFilter {
   /// A standing foot is where it was. If it is not, beyond the gate, it has slipped: its place is
   /// taken anew.
   FootVerdict correct_foot(core::Leg leg, const SeenFoot& seen) noexcept;
+
+  /// The vertical speed turned out to be wrong by `error` after a flight, of which nothing had been
+  /// expected: from now on it is as uncertain as that, and with it the height of all, which the
+  /// same error of the inertial sensor made wrong. The next corrections find both.
+  void doubt_flight(const FlightError& error) noexcept;
 
   /// The map says how high a standing sole is [m]; ignored beyond the gate. True if used.
   bool correct_height(core::Leg leg, double height) noexcept;

@@ -26,7 +26,11 @@ core::LegVector of_leg(const core::JointVector& all, core::Leg leg) {
 
 StateEstimator::StateEstimator(const EstimatorConfig& config, const model::RobotParameters& robot,
                                const StartPlace& start)
-    : config_(config), robot_(robot), start_(start), detector_(config.contact, robot) {}
+    : config_(config),
+      robot_(robot),
+      start_(start),
+      detector_(config.contact, robot),
+      flight_check_(config.flight_check) {}
 
 /// Both soles level on the whole, their mid-point at the start place.
 FilterState StateEstimator::first_guess(const core::SensorReadings& readings) const noexcept {
@@ -98,6 +102,23 @@ void StateEstimator::use_feet(const core::SensorReadings& readings, ContactExpec
   }
 }
 
+/// A flight in which the inertial sensor was wrong left a speed that the soles contradict.
+void StateEstimator::check_flight(const core::SensorReadings& readings, double dt) noexcept {
+  SolesNow now{.rise_speed = filter_->state().v_WB.z()};
+  const Eigen::Isometry3d level(filter_->state().R_WB);
+  for (const core::Leg leg : core::kAllLegs) {
+    now.standing += filter_->stands(leg) ? 1 : 0;
+    // A sole that rolls over toe or heel moves, and the tip that it rolls over does not.
+    const Eigen::Isometry3d X_BF = model::leg_poses(robot_, leg, of_leg(readings.q, leg)).X_BF;
+    const model::SoleTips tips = model::sole_tips(robot_, level * X_BF);
+    now.below += 0.5 * std::min(tips.toe.z(), tips.heel.z());
+  }
+  const std::optional<FlightError> error = flight_check_.update(now, dt);
+  if (!error) return;
+  ++counts_.flights_doubted;
+  filter_->doubt_flight(*error);
+}
+
 const core::RobotState& StateEstimator::update(const core::SensorReadings& readings,
                                                ContactExpectation expected) noexcept {
   if (!is_finite(readings)) {
@@ -122,6 +143,7 @@ const core::RobotState& StateEstimator::update(const core::SensorReadings& readi
                      {creep(core::Leg::left, readings), creep(core::Leg::right, readings)});
   publish(readings);
   use_feet(readings, expected, dt);
+  check_flight(readings, dt);
   publish(readings);
   return state_;
 }

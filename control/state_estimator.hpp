@@ -6,6 +6,7 @@
 
 #include "control/contact_detector.hpp"
 #include "control/estimator_config.hpp"
+#include "control/flight_check.hpp"
 #include "control/invariant_filter.hpp"
 #include "core/robot_state.hpp"
 #include "core/sensor_readings.hpp"
@@ -24,6 +25,7 @@ struct EstimatorCounts {
   std::uint64_t slips = 0;            ///< A standing foot was not where it had been.
   std::uint64_t heights_used = 0;     ///< Map heights that passed the gate.
   std::uint64_t heights_refused = 0;  ///< Those that did not.
+  std::uint64_t flights_doubted = 0;  ///< They led to a vertical speed that did not fit the soles.
   std::uint64_t bad_readings = 0;     ///< Not finite: passed on as they are, not filtered.
 };
 
@@ -54,6 +56,7 @@ class StateEstimator {
   [[nodiscard]] FilterState first_guess(const core::SensorReadings& readings) const noexcept;
   void use_feet(const core::SensorReadings& readings, ContactExpectation expected,
                 double dt) noexcept;
+  void check_flight(const core::SensorReadings& readings, double dt) noexcept;
   [[nodiscard]] SeenFoot see(core::Leg leg, const core::JointVector& q) const noexcept;
   [[nodiscard]] double creep(core::Leg leg, const core::SensorReadings& readings) const noexcept;
   void publish(const core::SensorReadings& readings) noexcept;
@@ -62,6 +65,7 @@ class StateEstimator {
   model::RobotParameters robot_;
   StartPlace start_;
   ContactDetector detector_;
+  FlightCheck flight_check_;
   std::optional<InvariantFilter> filter_;
   std::array<double, core::kLegs> standing_for_{};  ///< Since touchdown [s].
   core::RobotState state_;

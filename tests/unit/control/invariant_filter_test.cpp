@@ -213,6 +213,26 @@ TEST(InvariantFilter, AMapHeightIsBelievedWithinItsGate) {
   EXPECT_GT(filter.state().p_WB.z(), p);  // the trunk rises with the ground that it stands on
 }
 
+TEST(InvariantFilter, AfterADoubtedFlightASingleWrongMapHeightIsStillRefused) {
+  const FilterConfig config = testing::estimator_config().filter;
+  SwingingTrunk trunk(config, 4);
+  InvariantFilter filter(config, trunk.first_guess());
+  run(trunk, filter, 1050);
+  ASSERT_TRUE(filter.stands(Leg::left));
+  filter.doubt_flight({.rise_speed = 0.2, .flown = 0.3, .stood = 0.05});
+  EXPECT_GT(filter.covariance()(InvariantFilter::kPosition + 2, InvariantFilter::kPosition + 2),
+            0.03 * 0.03);
+  for (int tick = 1050; tick < 1150; ++tick) {
+    trunk.step(kTick * tick, filter);
+    trunk.stand(filter);
+  }
+  const double height = filter.state().p_WF[0].z();
+  EXPECT_NEAR(filter.state().p_WB.z(), trunk.truth().p_WB.z(), 0.01);
+  EXPECT_FALSE(filter.correct_height(Leg::left, height + 0.05));
+  EXPECT_EQ(filter.state().p_WF[0].z(), height);
+  EXPECT_GT(filter.covariance().selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-12);
+}
+
 TEST(InvariantFilter, CovarianceStaysSymmetricAndPositive) {
   const FilterConfig config = testing::estimator_config().filter;
   SwingingTrunk trunk(config, 6);

@@ -106,6 +106,30 @@ TEST_F(StateEstimatorTest, ATouchdownShowsInTheFirstTicks) {
   EXPECT_TRUE(estimator.state().contact[0] && estimator.state().contact[1]);
 }
 
+TEST_F(StateEstimatorTest, AFlightWithAWrongAccelerometerIsTakenBackBySolesThatStand) {
+  StateEstimator estimator(testing::estimator_config(), robot_, start_);
+  feed(estimator, standing(), 300, ContactExpectation::support);
+  core::SensorReadings hanging = falling();  // nothing on the soles, and the trunk stays in place
+  hanging.f_B = standing().f_B + Vector3d(0.0, 0.0, 1.0);
+  feed(estimator, hanging, 250, ContactExpectation::touchdown);
+  ASSERT_GT(estimator.state().p_WB.z() - truth_.p_WB.z(), 0.025);
+  feed(estimator, standing(), 150, ContactExpectation::touchdown);
+  EXPECT_EQ(estimator.counts().flights_doubted, 1U);
+  EXPECT_NEAR(estimator.state().p_WB.z(), truth_.p_WB.z(), 0.005);
+  EXPECT_NEAR(estimator.state().v_WB.z(), 0.0, 0.01);
+}
+
+TEST_F(StateEstimatorTest, AFlightThatFitsTheSolesIsNotDoubted) {
+  StateEstimator estimator(testing::estimator_config(), robot_, start_);
+  feed(estimator, standing(), 300, ContactExpectation::support);
+  core::SensorReadings hanging = falling();
+  hanging.f_B = standing().f_B;
+  feed(estimator, hanging, 250, ContactExpectation::touchdown);
+  ASSERT_FALSE(estimator.state().contact[0]);
+  feed(estimator, standing(), 150, ContactExpectation::touchdown);
+  EXPECT_EQ(estimator.counts().flights_doubted, 0U);
+}
+
 TEST_F(StateEstimatorTest, EarlyInFlightASmallForceIsNoTouchdown) {
   StateEstimator estimator(testing::estimator_config(), robot_, start_);
   feed(estimator, standing(), 100, ContactExpectation::support);
