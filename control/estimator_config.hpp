@@ -43,7 +43,7 @@ struct ContactConfig {
 /// When a flight is believed to have gone wrong: section `control.estimator.flight_check`.
 struct FlightCheckConfig {
   double settle_time = 0.0;  ///< After touchdown, until the soles have come to rest [s].
-  double watch_time = 0.0;   ///< For so long they are watched then [s].
+  double watch_time = 0.0;   ///< For so long they are watched then, twice [s].
   double speed_max = 0.0;    ///< Vertical speed off by so much is no noise [m/s].
 };
 

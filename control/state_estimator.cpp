@@ -111,10 +111,14 @@ void StateEstimator::check_flight(const core::SensorReadings& readings, double d
     // A sole that rolls over toe or heel moves, and the tip that it rolls over does not.
     const Eigen::Isometry3d X_BF = model::leg_poses(robot_, leg, of_leg(readings.q, leg)).X_BF;
     const model::SoleTips tips = model::sole_tips(robot_, level * X_BF);
-    now.below += 0.5 * std::min(tips.toe.z(), tips.heel.z());
+    now.below[core::index(leg)] = std::min(tips.toe.z(), tips.heel.z());
   }
   const std::optional<FlightError> error = flight_check_.update(now, dt);
-  if (!error) return;
+  // What the filter admits by itself, after a hard impact for one, the soles correct by themselves.
+  constexpr double kSigmas = 4.0;
+  constexpr int kRise = InvariantFilter::kVelocity + 2;
+  const double admitted = kSigmas * std::sqrt(filter_->covariance()(kRise, kRise));
+  if (!error || std::abs(error->rise_speed) <= admitted) return;
   ++counts_.flights_doubted;
   filter_->doubt_flight(*error);
 }

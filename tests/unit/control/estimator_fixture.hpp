@@ -26,7 +26,7 @@ inline EstimatorConfig estimator_config() {
                    .gate = 36.0,
                    .height_sigma = 0.006,
                    .height_gate = 6.0};
-  config.flight_check = {.settle_time = 0.02, .watch_time = 0.02, .speed_max = 0.08};
+  config.flight_check = {.settle_time = 0.02, .watch_time = 0.01, .speed_max = 0.08};
   config.contact = {.residual_rate = 250.0,
                     .support_force = 30.0,
                     .touchdown_force = 40.0,

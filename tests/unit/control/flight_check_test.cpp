@@ -16,7 +16,8 @@ class FlightCheckTest : public ::testing::Test {
   std::optional<FlightError> feed(int ticks, int standing, double true_speed, double error) {
     std::optional<FlightError> found;
     for (int i = 0; i < ticks; ++i) {
-      below_ -= true_speed * kTick;
+      below_[0] -= true_speed * kTick;
+      below_[1] -= (true_speed + sinking_) * kTick;
       const auto answer = check_.update(
           {.standing = standing, .below = below_, .rise_speed = true_speed + error}, kTick);
       if (answer) {
@@ -28,7 +29,8 @@ class FlightCheckTest : public ::testing::Test {
   }
 
   FlightCheck check_{testing::estimator_config().flight_check};
-  double below_ = -0.5;
+  std::array<double, core::kLegs> below_{-0.5, -0.5};
+  double sinking_ = 0.0;  ///< Of the right sole, slower than the trunk rises over the left [m/s].
   int answers_ = 0;
 };
 
@@ -55,6 +57,18 @@ TEST_F(FlightCheckTest, OneSoleIsNotEnough) {
   feed(300, 0, -1.0, 0.2);
   EXPECT_FALSE(feed(100, 1, -0.4, 0.2).has_value());
   EXPECT_TRUE(feed(50, 2, -0.4, 0.2).has_value());
+}
+
+TEST_F(FlightCheckTest, ASoleThatMovesIsNoErrorOfTheFlight) {
+  feed(300, 0, -1.0, 0.0);
+  sinking_ = 0.3;
+  EXPECT_FALSE(feed(200, 2, -0.4, 0.0).has_value());
+}
+
+TEST_F(FlightCheckTest, AnErrorThatPassesIsNoneOfTheFlight) {
+  feed(300, 0, -1.0, 0.0);
+  EXPECT_FALSE(feed(31, 2, -0.4, 0.3).has_value());
+  EXPECT_FALSE(feed(200, 2, -0.4, 0.0).has_value());
 }
 
 TEST_F(FlightCheckTest, ABounceBelongsToTheFlight) {
