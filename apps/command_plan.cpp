@@ -144,7 +144,7 @@ FlownJump fly(const FlightTrial& trial, const std::filesystem::path& video) {
   const std::string title =
       fixed(trial.step.distance, 2) + " m ahead, " + fixed(trial.step.height, 2) + " m up   ";
   int frame = 0;
-  const FlownJump flown = fly(trial, [&](const core::RobotState& state) {
+  FlownJump flown = fly(trial, [&](const core::RobotState& state) {
     const double time = state.stamp.seconds();
     if (time < frame * Film::kStep) return;
     film.add(state, title + fixed(time, 2) + " s");

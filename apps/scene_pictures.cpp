@@ -80,11 +80,20 @@ double height_at(const core::TerrainProfile& profile, double x) {
   return std::isfinite(mean) ? mean : 0.0;
 }
 
+/// By how much the ground is higher behind an edge than before it; a gap counts at its far side.
+double rise_at(const core::TerrainEdge& edge) {
+  return std::isfinite(edge.step) && edge.kind != core::EdgeKind::gap_near ? edge.step : 0.0;
+}
+
 void draw_edges(cv::Mat& picture, const Projection& project, const TerrainReport& report) {
-  double level = 0.0;
-  for (std::size_t i = 0; i < report.survey.features.edge_count; ++i) {
-    const core::TerrainEdge& edge = report.survey.features.edges[i];
-    const double step = std::isfinite(edge.step) ? edge.step : 0.0;
+  const core::OneStepTerrain& features = report.survey.features;
+  double level = 0.0;  // under the soles; steps that lie behind them lead up to it
+  for (std::size_t i = 0; i < features.edge_count; ++i) {
+    if (features.edges[i].x < 0.0) level -= rise_at(features.edges[i]);
+  }
+  for (std::size_t i = 0; i < features.edge_count; ++i) {
+    const core::TerrainEdge& edge = features.edges[i];
+    const double step = rise_at(edge);
     const bool up = edge.kind == core::EdgeKind::up;
     const bool far = edge.kind == core::EdgeKind::gap_far;
     const double height = up || far ? level + step : level;
@@ -94,7 +103,7 @@ void draw_edges(cv::Mat& picture, const Projection& project, const TerrainReport
          colour);
     const auto right = project({edge.x, -kEdgeHalfWidth, height});
     if (right) label(picture, *right, name_of(edge), colour);
-    if (edge.kind != core::EdgeKind::gap_near) level += step;
+    level += step;
   }
 }
 
