@@ -48,7 +48,9 @@ SolvedMotion CorrectedSolver::solve(const PlanarModel& model, const PlanarTask& 
   ChainProblem problem(model, task, layout_);
   correction_.clear();
   problem.correct(correction_);
-  const SolveOptions options{std::min(allowed_, model.config.iterations_max),
+  // It may take two attempts.
+  const int allowed = std::max(1, allowed_ / 2);
+  const SolveOptions options{std::min(allowed, model.config.iterations_max),
                              model.config.tolerance};
   return corrected(model, task, problem, chain_.solve(problem, start, options));
 }

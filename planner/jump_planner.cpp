@@ -6,6 +6,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "planner/certificate.hpp"
 #include "planner/certified_plan.hpp"
@@ -37,6 +39,10 @@ constexpr std::size_t kNeighbours = 2;
 /// Of all rungs together: what the solves of one plan may take, so that its time has a bound
 /// (docs/decisions/0076). The library's jumps as they are cost next to nothing.
 constexpr int kIterationsInAll = 170;
+
+/// A solve from a neighbour that ends no further from feasible goes on once from where it is: at
+/// the rim, an edge that lies one sample nearer takes it twice the usual iterations.
+constexpr double kCloseViolation = 0.02;
 
 /// In the words of the certificate.
 constexpr const char* kShankLimit = "shank clearance";
@@ -81,6 +87,11 @@ core::JumpPlan plan_for(const PlanRequest& request, const SolveOutcome& outcome)
                                                       : core::PlanStatus::iteration_limit;
   plan.iterations = outcome.iterations;
   return plan;
+}
+
+bool is_close(const SolveOutcome& outcome) {
+  return outcome.status == SolveStatus::iteration_limit && !is_acceptable(outcome) &&
+         outcome.violation <= kCloseViolation;
 }
 
 /// Of a rung below the first; what is reported is the refusal of the first.
@@ -145,7 +156,8 @@ struct JumpPlanner::Memory {
   [[nodiscard]] core::Result<core::JumpPlan> climb_down(const Trial& trial);
   /// Prepares one more solve; false when the plan has had its share of iterations.
   [[nodiscard]] bool has_time();
-  [[nodiscard]] core::Result<core::JumpPlan> by_neighbours(const Trial& trial, std::size_t count);
+  [[nodiscard]] core::Result<core::JumpPlan> by_neighbours(const Trial& trial, std::size_t from,
+                                                           std::size_t to);
   [[nodiscard]] core::Result<core::JumpPlan> by_library(const Trial& trial);
   [[nodiscard]] core::Result<core::JumpPlan> finish(const Trial& trial, const SolvedMotion& solved);
   [[nodiscard]] core::Result<core::JumpPlan> finish_near(const Trial& trial, const KnownJump& from);
@@ -191,8 +203,13 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::finish(const Trial& trial,
 
 core::Result<core::JumpPlan> JumpPlanner::Memory::finish_near(const Trial& trial,
                                                               const KnownJump& from) {
-  core::Result<core::JumpPlan> plan =
-      finish(trial, chain.solve_near(trial.model, trial.task, from));
+  SolvedMotion solved = chain.solve_near(trial.model, trial.task, from);
+  if (is_close(solved.outcome)) {
+    iterations += std::exchange(solved.outcome.iterations, 0);
+    const KnownJump here = chain.known(trial.task, solved);
+    if (has_time()) solved = chain.solve_near(trial.model, trial.task, here);
+  }
+  core::Result<core::JumpPlan> plan = finish(trial, solved);
   if (plan) plan.value().warm = true;
   return plan;
 }
@@ -212,8 +229,9 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::climb_down(const Trial& trial)
     first = finish_near(trial, from);
     if (first) return first;
   }
-  if (trial.request.guess != StartGuess::kinematic) {
-    if (core::Result<core::JumpPlan> plan = by_neighbours(trial, 1)) return plan;
+  const std::size_t tried = trial.request.guess == StartGuess::kinematic ? 0 : 1;
+  if (tried > 0) {
+    if (core::Result<core::JumpPlan> plan = by_neighbours(trial, 0, tried)) return plan;
     rung = PlanRung::solved;
   }
   const auto& [model, task, request] = trial;
@@ -222,18 +240,18 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::climb_down(const Trial& trial)
   }
   if (first) return first;
   const std::string_view first_obstacle = obstacle;
-  if (core::Result<core::JumpPlan> plan = by_neighbours(trial, kNeighbours)) return plan;
+  if (core::Result<core::JumpPlan> plan = by_neighbours(trial, tried, kNeighbours)) return plan;
   if (core::Result<core::JumpPlan> plan = by_library(trial)) return plan;
   obstacle = first_obstacle;
   return first;
 }
 
 core::Result<core::JumpPlan> JumpPlanner::Memory::by_neighbours(const Trial& trial,
-                                                                std::size_t count) {
+                                                                std::size_t from, std::size_t to) {
   rung = PlanRung::neighbour;
-  for (const KnownJump* near : library->nearest(trial.task, count)) {
-    if (!has_time()) break;
-    if (core::Result<core::JumpPlan> plan = finish_near(trial, *near)) return plan;
+  const std::vector<const KnownJump*> near = library->nearest(trial.task, to);
+  for (std::size_t i = from; i < near.size() && has_time(); ++i) {
+    if (core::Result<core::JumpPlan> plan = finish_near(trial, *near[i])) return plan;
   }
   return no_plan();
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "apps/installation.hpp"
 #include "apps/program_config.hpp"
@@ -84,6 +86,45 @@ TEST(ShippedJumps, ABrokenFileIsNamed) {
     EXPECT_NE(std::string(error.what()).find("hopscotch-broken-library"), std::string::npos);
   }
   std::filesystem::remove(file);
+}
+
+planner::PlanRequest from_standing(const model::RobotParameters& robot, double distance,
+                                   double height) {
+  const planner::StepRequest step{
+      .distance = distance, .height = height, .edge = planner::default_edge(distance, height)};
+  return {
+      .start =
+          planner::start_state(planner::StartKind::stand, robot, config().stand_posture).value(),
+      .target = planner::step_target(step, robot),
+      .final_posture = config().stand_posture};
+}
+
+TEST(ShippedJumps, HighStepsBetweenThemAreSolvedToWhereTheyWereAskedFor) {
+  const model::RobotParameters robot = model::RobotParameters::load(robot_file("hector"));
+  planner::JumpPlanner planner(config().planner, robot,
+                               shipped_jumps("hector", config().planner.steps));
+  for (const auto& [distance, height] : {std::pair{0.258, 0.25}, std::pair{0.266, 0.256}}) {
+    const auto plan = planner.plan(from_standing(robot, distance, height));
+    ASSERT_TRUE(plan) << plan.error().text();
+    EXPECT_EQ(planner.rung(), planner::PlanRung::neighbour);
+    EXPECT_EQ(plan->target.distance, distance);
+    EXPECT_EQ(plan->target.height, height);
+  }
+}
+
+TEST(ShippedJumps, NoPlanOrRefusalTakesMoreThanItsShareOfIterations) {
+  constexpr int kIterationsInAll = 170;  // docs/decisions/0076
+  const model::RobotParameters robot = model::RobotParameters::load(robot_file("hector"));
+  planner::JumpPlanner planner(config().planner, robot,
+                               shipped_jumps("hector", config().planner.steps));
+  int most = 0;
+  for (const auto& [distance, height] :
+       {std::pair{0.282, 0.2685}, std::pair{0.654, -0.101}, std::pair{0.447, 0.195}}) {
+    (void)planner.plan(from_standing(robot, distance, height));
+    EXPECT_LE(planner.iterations(), kIterationsInAll) << distance << " m, " << height << " m up";
+    most = std::max(most, planner.iterations());
+  }
+  EXPECT_EQ(most, kIterationsInAll);  // else these targets have become easy: take others
 }
 
 /// Whether footstep lets a robot that stands `edge` behind a change of height jump there, with room
