@@ -28,8 +28,9 @@ using namespace hopscotch::planner;  // NOLINT
 constexpr double kAgreement = 1e-4;  // of costs, relative
 /// Both stop so close to the optimum that what is left of it does not count.
 constexpr double kTolerance = 1e-5;
-/// Jumps of the library that the chain solver starts from.
-constexpr std::size_t kNeighbours = 9;
+/// Jumps of the library that the chain solver starts from. Most come in pairs, from two starts that
+/// are alike and lead to the same minimum.
+constexpr std::size_t kNeighbours = 24;
 
 std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
