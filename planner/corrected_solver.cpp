@@ -1,6 +1,8 @@
 #include "planner/corrected_solver.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "planner/slot_names.hpp"
 
@@ -22,6 +24,29 @@ constexpr double kPolishProgress = 0.9;
 /// Dynamics between the knots and limits beyond it are good: an aim that leaves room below the
 /// tolerance of the certificate.
 constexpr double kDefectWanted = 7e-4;
+/// A pass that leaves more of the defect may have overshot: what was active is not any more, and
+/// comes back with the next one. From the second such pass on corrections go half of their way.
+constexpr double kOvershoot = 0.8;
+constexpr int kOvershootsMax = 1;
+
+double half_way(double from, double to) {
+  return std::isfinite(from) && std::isfinite(to) ? 0.5 * (from + to) : to;
+}
+
+void go_half_way(const ChainCorrection& from, ChainCorrection& to) {
+  for (std::size_t i = 0; i < to.steps.size(); ++i) {
+    for (std::size_t j = 0; j < model::kPlanarLinks; ++j) {
+      double& turn = to.steps[i].turn[j];
+      double& acceleration = to.steps[i].acceleration[j];
+      turn = half_way(from.steps[i].turn[j], turn);
+      acceleration = half_way(from.steps[i].acceleration[j], acceleration);
+    }
+  }
+  for (Eigen::Index r = 0; r < to.lower.size(); ++r) {
+    to.lower(r) = half_way(from.lower(r), to.lower(r));
+    to.upper(r) = half_way(from.upper(r), to.upper(r));
+  }
+}
 
 }  // namespace
 
@@ -41,7 +66,10 @@ PlanarMotion motion_of(const KnownJump& jump, const PlanarModel& model, const Pl
 }
 
 CorrectedSolver::CorrectedSolver(const DecisionLayout& layout)
-    : layout_(layout), chain_(layout), correction_(ChainLayout(layout)) {}
+    : layout_(layout),
+      chain_(layout),
+      correction_(ChainLayout(layout)),
+      last_correction_(correction_) {}
 
 SolvedMotion CorrectedSolver::solve(const PlanarModel& model, const PlanarTask& task,
                                     const Eigen::VectorXd& start) {
@@ -98,16 +126,20 @@ void CorrectedSolver::refine(const PlanarModel& model, const PlanarTask& task,
   double least = examine();
   double defect = least;
   double violation = kUnbounded;
+  int overshoots = 0;
   const int granted = std::min(kPolishIterations, allowed_ - best.outcome.iterations);
   int left = granted;
   while (left > 0 && defect > kDefectWanted) {
+    if (overshoots > kOvershootsMax) go_half_way(last_correction_, correction_);
     problem.correct(correction_);
     const SolveOptions options{std::min(left, kPolishIterationsMax), model.config.tolerance, 1};
     const ChainOutcome solved = chain_.polish(problem, options);
     left -= std::max(1, solved.iterations);
     motion = motion_from_decision(model, task, layout_, chain_.x());
     set_correction(correction_, motion);
-    defect = examine();
+    last_correction_ = correction_;
+    const double last_defect = std::exchange(defect, examine());
+    if (defect > kOvershoot * last_defect) ++overshoots;
     const double progress = solved.violation / violation;
     violation = solved.violation;
     if (violation > kPolishHopeless && progress > kPolishProgress) break;

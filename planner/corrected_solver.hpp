@@ -51,7 +51,8 @@ class CorrectedSolver {
   DecisionLayout layout_;
   ChainSolver chain_;
   ChainCorrection correction_;
-  ChainSolution best_;  ///< Of the last solve.
+  ChainCorrection last_correction_;  ///< That the motion at hand was solved with.
+  ChainSolution best_;               ///< Of the last solve.
   std::string_view obstacle_;
   int allowed_ = std::numeric_limits<int>::max();
 };

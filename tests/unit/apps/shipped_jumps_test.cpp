@@ -112,6 +112,18 @@ TEST(ShippedJumps, HighStepsBetweenThemAreSolvedToWhereTheyWereAskedFor) {
   }
 }
 
+TEST(ShippedJumps, CorrectionsThatOvershootSettleByHalves) {
+  const model::RobotParameters robot = model::RobotParameters::load(robot_file("hector"));
+  planner::JumpPlanner planner(config().planner, robot,
+                               shipped_jumps("hector", config().planner.steps));
+  for (const auto& [distance, height] : {std::pair{0.4337, 0.1955}, std::pair{0.6424, -0.1115}}) {
+    const auto plan = planner.plan(from_standing(robot, distance, height));
+    ASSERT_TRUE(plan) << plan.error().text();
+    EXPECT_EQ(planner.rung(), planner::PlanRung::neighbour);
+    EXPECT_EQ(plan->target.distance, distance);
+  }
+}
+
 TEST(ShippedJumps, NoPlanOrRefusalTakesMoreThanItsShareOfIterations) {
   constexpr int kIterationsInAll = 170;  // docs/decisions/0076
   const model::RobotParameters robot = model::RobotParameters::load(robot_file("hector"));
