@@ -53,26 +53,34 @@ struct PlannerSamples {
   }
 };
 
-/// Plans the rests of a jump from knots of its takeoff, as if pushed there.
+/// Plans the rests of a jump from knots of its takeoff and landing, as if pushed there.
 struct ReplanSamples {
-  /// Takeoff steps done, and how much faster than planned the trunk turns then [rad/s].
+  /// Steps of the phase done, and how much faster than planned the trunk turns then [rad/s].
   struct Push {
+    core::JumpPhase phase;
     int steps_done;
     double rate;
   };
-  static constexpr std::array kPushes{Push{5, 0.1}, Push{12, -0.1}, Push{18, 0.1}};
+  static constexpr std::array kPushes{
+      Push{core::JumpPhase::takeoff, 5, 0.1}, Push{core::JumpPhase::takeoff, 12, -0.1},
+      Push{core::JumpPhase::takeoff, 18, 0.1}, Push{core::JumpPhase::landing, 2, -0.1},
+      Push{core::JumpPhase::landing, 7, 0.1}};
 
+  planner::StepCounts steps;
   planner::Replanner replanner;
   std::vector<double> replan_ms;
   std::vector<double> iterations;
   int planned = 0;
 
-  explicit ReplanSamples(const BenchSetup& setup) : replanner(setup.config.planner, setup.robot) {}
+  explicit ReplanSamples(const BenchSetup& setup)
+      : steps(setup.config.planner.steps), replanner(setup.config.planner, setup.robot) {}
 
   void replan(const planner::PlanRequest& request, const core::JumpPlan& plan,
               const planner::KnownJump& solution) {
     const auto whole = std::make_shared<const planner::KnownJump>(solution);
-    for (const auto [steps_done, rate] : kPushes) {
+    for (const auto& [phase, of_phase, rate] : kPushes) {
+      const int before = phase == core::JumpPhase::landing ? steps.takeoff + steps.flight : 0;
+      const int steps_done = before + of_phase;
       planner::RestRequest rest{
           .id = request.id,
           .whole = whole,

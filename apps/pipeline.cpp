@@ -82,9 +82,8 @@ Pipeline::Pipeline(const ProgramConfig& config, const model::RobotParameters& ro
              .latency = config.runtime.replanning_latency,
              .threaded = threading == Threading::threads,
              .thread = config.threads.planning},
-            [this](const RestQuestion& question, Rest& rest) {
-              rest.steps_done = question.request.steps_done;
-              rest.plan = replanner_.replan(question.request);
+            [this](const planner::RestRequest& request, Rest& rest) {
+              rest = replanner_.replan(request);
             }),
       balance_({.name = "MPC",
                 .latency = config.runtime.mpc_latency,
@@ -222,27 +221,36 @@ void Pipeline::decide(const core::RobotState& state) {
   if (const Decision* const decision = decision_.made()) weigh(state.stamp, *decision);
 }
 
-/// While a jump pushes off, what is left of it is planned anew from where the robot is: from one
-/// knot after the other. The plan in hand counts until another one is certified.
+/// While a jump pushes off or lands, what is left of it is planned anew from where the robot is,
+/// again and again. The plan in hand counts until another one is certified.
 void Pipeline::replan(core::Stamp now) {
-  if (const Rest* const rest = rest_.take(now); rest != nullptr && *rest->plan) {
-    const auto knot = static_cast<std::size_t>(rest->steps_done);
-    events_.replanned = control_->replace_rest(**rest->plan, knot);
+  if (const Rest* const rest = rest_.take(now); rest != nullptr && **rest) {
+    events_.replanned = control_->replace_rest(***rest, rest_place_);
     mpc_urgent_ = mpc_urgent_ || events_.replanned;
   }
   (void)rest_.made();  // nobody records them
-  if (!config_.runtime.replanning || !rest_.vacant() || control_->plan().id != solved_id_) return;
-  const auto question = control_->rest_question(config_.runtime.replanning_latency);
-  if (!question) return;
-  const int steps_done = static_cast<int>(question->knot);
-  if (config_.planner.steps.takeoff - steps_done < planner::Replanner::kStepsLeftMin) return;
+  const bool lands = control_->phase() == RobotPhase::landing;
+  const RuntimeConfig& runtime = config_.runtime;
+  if (!(lands ? runtime.landing_replanning : runtime.takeoff_replanning)) return;
   const core::JumpPlan& plan = control_->plan();
-  rest_.question().request = {.id = plan.id,
-                              .whole = solution_,
-                              .steps_done = steps_done,
-                              .state = question->state,
-                              .target = plan.target,
-                              .final_posture = config_.stand_posture};
+  const SolvedJump& jump = plan.id == planned_.plan_id ? planned_ : under_way_;
+  if (!rest_.vacant() || plan.id != jump.plan_id || !jump.solution) return;
+  const auto question = control_->rest_question(runtime.replanning_latency);
+  if (!question) return;
+  const planner::StepCounts& steps = config_.planner.steps;
+  const double since_touchdown = question->place.begin - plan.touchdown_time;
+  const int steps_done =
+      lands ? steps.takeoff + steps.flight +
+                  planner::landing_steps_begun(config_.planner, *jump.solution, since_touchdown)
+            : static_cast<int>(question->place.knot);
+  if (!planner::rest_steps(steps, steps_done)) return;
+  rest_place_ = question->place;
+  rest_.question() = {.id = plan.id,
+                      .whole = jump.solution,
+                      .steps_done = steps_done,
+                      .state = question->state,
+                      .target = plan.target,
+                      .final_posture = config_.stand_posture};
   rest_.ask(now);
 }
 
@@ -328,7 +336,8 @@ void Pipeline::make_decision(const DecisionQuestion& question, Decision& decisio
 /// On the planning stage's thread.
 void Pipeline::plan_jump(const planner::PlanRequest& request, Decision& decision) {
   decision.plan = planner_.plan(request);
-  decision.solution = config_.runtime.replanning ? planner_.solution() : nullptr;
+  const bool wanted = config_.runtime.takeoff_replanning || config_.runtime.landing_replanning;
+  decision.solution = wanted ? planner_.solution() : nullptr;
 }
 
 void Pipeline::weigh(core::Stamp now, const Decision& decision) {
@@ -363,8 +372,8 @@ void Pipeline::receive_plan(const Decision& decision) {
   if (plan) {
     failed_distances_.clear();
     control_->offer(*plan);
-    solution_ = decision.solution;
-    solved_id_ = solution_ ? plan->id : 0;
+    if (planned_.plan_id == control_->plan().id) under_way_ = planned_;
+    planned_ = {plan->id, decision.solution};
   } else {
     next_best(plan.error());
   }

@@ -60,7 +60,7 @@ struct PipelineEvents {
   std::optional<core::OneStepTerrain> terrain;
   std::optional<core::TargetChoice> choice;
   std::optional<core::Result<core::JumpPlan>> plan;
-  bool replanned = false;                     ///< The takeoff goes on by a new plan of its rest.
+  bool replanned = false;                     ///< The jump goes on by a new plan of its rest.
   std::vector<core::OperatorAnswer> answers;  ///< To commands of the operator.
   std::optional<double> perception_ms;        ///< Wall time of the stage in this tick.
   std::optional<double> planning_ms;
@@ -120,14 +120,13 @@ struct Decision {
   std::shared_ptr<const planner::KnownJump> solution;
 };
 
-/// What is left of the jump whose takeoff is under way.
-struct RestQuestion {
-  planner::RestRequest request;
-};
+/// What is left of the jump that is under way, planned anew; empty before the first.
+using Rest = std::optional<core::Result<core::JumpPlan>>;
 
-struct Rest {
-  int steps_done = 0;
-  std::optional<core::Result<core::JumpPlan>> plan;
+/// A plan and the solution that it comes from.
+struct SolvedJump {
+  std::uint64_t plan_id = 0;
+  std::shared_ptr<const planner::KnownJump> solution;  ///< Null if it has none.
 };
 
 struct BalanceQuestion {
@@ -250,8 +249,9 @@ class Pipeline {
   int jumps_done_ = 0;
   int called_off_ = 0;  ///< Jumps in a row that strayed before they rose.
   std::uint64_t plans_made_ = 0;
-  std::uint64_t solved_id_ = 0;  ///< Of the plan that `solution_` is of.
-  std::shared_ptr<const planner::KnownJump> solution_;
+  control::ControlTick::RestPlace rest_place_;  ///< Of the question that `rest_` works on.
+  SolvedJump under_way_;
+  SolvedJump planned_;  ///< The last one that was.
   std::optional<MissionEnd> end_;
   core::Refusal end_reason_;
   PipelineEvents events_;
@@ -259,7 +259,7 @@ class Pipeline {
   // Last: their threads use the stages above.
   Stage<SightQuestion, Sight> sight_;
   Stage<DecisionQuestion, Decision> decision_;
-  Stage<RestQuestion, Rest> rest_;
+  Stage<planner::RestRequest, Rest> rest_;
   Stage<BalanceQuestion, control::MpcAnswer> balance_;
 };
 

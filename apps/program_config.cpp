@@ -11,7 +11,8 @@ RuntimeConfig RuntimeConfig::load(const core::ConfigReader& section) {
   config.planning_latency =
       1e-3 * section.number("planning_latency_ms", Range::closed(0.0, 5000.0));
   config.mpc_latency = 1e-3 * section.number("mpc_latency_ms", Range::closed(0.0, 20.0));
-  config.replanning = section.flag("replanning");
+  config.takeoff_replanning = section.flag("takeoff_replanning");
+  config.landing_replanning = section.flag("landing_replanning");
   config.replanning_latency =
       1e-3 * section.number("replanning_latency_ms", Range::closed(0.0, 100.0));
   config.mpc_period = 1e-3 * section.number("mpc_period_ms", Range::closed(1.0, 50.0));

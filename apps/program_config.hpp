@@ -17,7 +17,8 @@ struct RuntimeConfig {
   double perception_latency = 0.0;  ///< Depth frame delivered to map updated [s].
   double planning_latency = 0.0;    ///< Target and state to plan [s].
   double mpc_latency = 0.0;         ///< State to wrenches [s].
-  bool replanning = false;          ///< Takeoffs are planned anew while they are under way.
+  bool takeoff_replanning = false;  ///< Takeoffs are planned anew while they are under way.
+  bool landing_replanning = false;  ///< The same of landings.
   double replanning_latency = 0.0;  ///< State to the rest of a plan [s].
   double mpc_period = 0.0;          ///< [s]
   double look_time = 0.0;           ///< After touchdown, before the next target is chosen [s].

@@ -65,29 +65,15 @@ double wrapped(double angle) {
   return std::remainder(angle, 2.0 * std::numbers::pi);
 }
 
-/// The state `delay` later [s], its rates changing as the plan's do: what acts until then has been
-/// sent already.
-/// @param now, then The plan where the body is, and `delay` later.
-core::RobotState extrapolate(const core::RobotState& state, double delay, const core::JumpKnot& now,
-                             const core::JumpKnot& then) {
-  core::RobotState later = state;
-  later.stamp = state.stamp.after(delay);
-  later.v_WB += then.v_WB - now.v_WB;
-  later.w_WB += then.w_WB - now.w_WB;
-  later.dq += then.dq - now.dq;
-  later.p_WB += 0.5 * delay * (state.v_WB + later.v_WB);
-  const Eigen::Vector3d turn = 0.5 * delay * (state.w_WB + later.w_WB);
-  const double angle = turn.norm();
-  if (angle > 0.0) later.R_WB = Eigen::AngleAxisd(angle, turn / angle) * state.R_WB;
-  later.q += 0.5 * delay * (state.dq + later.dq);
-  return later;
-}
-
 }  // namespace
 
 ControlTick::ControlTick(const ControlConfig& config, const model::RobotParameters& robot,
                          const StandTarget& stand)
-    : config_(config), robot_(robot), supervisor_(config.supervisor, robot), stand_(stand) {}
+    : config_(config),
+      robot_(robot),
+      limiter_(config.wrench_mpc, robot),
+      supervisor_(config.supervisor, robot),
+      stand_(stand) {}
 
 double ControlTick::command_time(core::Stamp now) const noexcept {
   return now.since(start_);
@@ -116,35 +102,6 @@ void ControlTick::begin_next(const core::RobotState& state) noexcept {
   }
   replaced_knot_ = 0;
   supervisor_.begin_jump(plan_);
-}
-
-std::optional<ControlTick::RestQuestion> ControlTick::rest_question(double ahead) const noexcept {
-  if (!core::is_pushing_off(phase()) || plan_.id == 0) return std::nullopt;
-  const double time = command_time(state_.stamp);
-  const std::size_t knot = knot_index(plan_, time + ahead) + 1;
-  if (knot <= replaced_knot_ || plan_.knots[knot].time >= plan_.liftoff_time) return std::nullopt;
-  const double body_time = time - config_.actuation_delay;
-  return RestQuestion{knot,
-                      extrapolate(state_, plan_.knots[knot].time - body_time,
-                                  sample_plan(plan_, std::max(0.0, body_time)), plan_.knots[knot])};
-}
-
-bool ControlTick::replace_rest(const core::JumpPlan& rest, std::size_t knot) noexcept {
-  constexpr double kLate = 0.002;  // [s]
-  const bool fits = core::is_pushing_off(phase()) && rest.id == plan_.id && knot > replaced_knot_ &&
-                    knot + rest.knot_count == plan_.knot_count;
-  if (!fits || command_time(state_.stamp) > plan_.knots[knot].time + kLate) return false;
-  const double begin = plan_.knots[knot].time;
-  for (std::size_t i = 0; i < rest.knot_count; ++i) {
-    plan_.knots[knot + i] = rest.knots[i];
-    plan_.knots[knot + i].time += begin;
-  }
-  plan_.liftoff_time = begin + rest.liftoff_time;
-  plan_.touchdown_time = begin + rest.touchdown_time;
-  plan_.duration = begin + rest.duration;
-  replaced_knot_ = knot;
-  replaced_ = state_.stamp;
-  return true;
 }
 
 /// From the present motion to a stand on the present soles.
@@ -244,7 +201,6 @@ void ControlTick::enter_phase(const core::RobotState& state) noexcept {
 /// speed and taken some of the trunk's, so that the plan made before it would sink too far and
 /// bounce.
 void ControlTick::settle_again(const core::RobotState& state) noexcept {
-  constexpr double kImpactTime = 0.015;  // [s]
   if (!impact_pending_ && !shape_pending_) return;
   if (state.stamp.since(touchdown_) < kImpactTime) return;
   const bool falling = impact_pending_;
@@ -422,14 +378,11 @@ void ControlTick::push_off(const core::RobotState& state, const core::JumpKnot& 
     return;
   }
   if (answer_.stamp < replaced_) return;  // it corrects what the plan has taken in
-  core::ContactWrenches deviation{};
   for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
-    deviation[leg].force = answer_.wrenches[leg].force - answer_.planned[leg].force;
-    deviation[leg].moment = answer_.wrenches[leg].moment - answer_.planned[leg].moment;
-    status_.wrenches[leg].force += deviation[leg].force;
-    status_.wrenches[leg].moment += deviation[leg].moment;
+    status_.wrenches[leg].force += answer_.wrenches[leg].force - answer_.planned[leg].force;
+    status_.wrenches[leg].moment += answer_.wrenches[leg].moment - answer_.planned[leg].moment;
   }
-  command.tau += contact_torques(robot_, state, deviation);
+  bear_wrenches(state, planned.tau - contact_torques(robot_, state, planned.wrenches), command);
 }
 
 /// The MPC's wrenches and the legs' own weight; without the MPC what the plan would have.
@@ -438,8 +391,16 @@ void ControlTick::bear_load(const core::RobotState& state, const core::JumpKnot&
   const bool answered = answer_is_fresh() && answer_.form == MpcForm::full;
   if (!answered) ++stale_ticks_;
   status_.wrenches = answered ? answer_.wrenches : planned.wrenches;
-  command.tau =
-      leg_weight_torques(robot_, state) + contact_torques(robot_, state, status_.wrenches);
+  bear_wrenches(state, leg_weight_torques(robot_, state), command);
+}
+
+/// Adds the torques for what the motors can hold of the chosen wrenches, next to `base` and the
+/// joints' PD.
+void ControlTick::bear_wrenches(const core::RobotState& state, const core::JointVector& base,
+                                core::JointCommand& command) noexcept {
+  const core::JointVector pd =
+      command.kp.cwiseProduct(command.q - state.q) + command.kd.cwiseProduct(command.dq - state.dq);
+  command.tau = base + limiter_.limit(state, base + pd, status_.wrenches);
 }
 
 void ControlTick::answer(const MpcAnswer& answer) noexcept {

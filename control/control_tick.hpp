@@ -12,6 +12,7 @@
 #include "control/plan_follower.hpp"
 #include "control/recovery_hop.hpp"
 #include "control/stand_plan.hpp"
+#include "control/wrench_limiter.hpp"
 #include "control/wrench_mpc.hpp"
 #include "core/control_reference.hpp"
 #include "core/control_status.hpp"
@@ -65,18 +66,23 @@ class ControlTick {
   /// Hands over the next jump; it starts when the present one has landed, at once when standing.
   void offer(const core::JumpPlan& plan) noexcept;
 
-  /// Where the takeoff of a jump may be planned anew: its first knot that is at least `ahead` away
-  /// [s] and comes after the last one that was replaced, and the state that the body will probably
-  /// have there. Null while nothing pushes off, and where no such knot is left.
-  struct RestQuestion {
-    std::size_t knot = 0;
-    core::RobotState state;
+  /// From where on the jump under way may go on by another plan.
+  struct RestPlace {
+    std::size_t knot = 0;  ///< The first of the plan's that is replaced.
+    double begin = 0.0;    ///< On the plan's clock [s].
   };
+  struct RestQuestion {
+    RestPlace place;
+    core::RobotState state;  ///< That the body will probably have there.
+  };
+  /// Where a takeoff or, once the impact is over, a landing may be planned anew, at least `ahead`
+  /// from now [s]: a takeoff, whose steps have fixed lengths, from its next knot that was not yet
+  /// replaced, a landing from any moment. Null in other phases, and where no such knot is left.
   [[nodiscard]] std::optional<RestQuestion> rest_question(double ahead) const noexcept;
-  /// Goes on by another plan of the same jump from a knot of the present one on.
-  /// @param rest Its clock starts at the knot.
-  /// @return false, and changes nothing, if that knot is no longer ahead.
-  bool replace_rest(const core::JumpPlan& rest, std::size_t knot) noexcept;
+  /// Goes on by another plan of the same jump.
+  /// @param rest Its clock starts at `place.begin`.
+  /// @return false, and changes nothing, if that moment has passed or `rest` is not of this jump.
+  bool replace_rest(const core::JumpPlan& rest, const RestPlace& place) noexcept;
 
   /// The operator's wishes, after the phase table of JumpSupervisor; false = refused in this phase.
   /// Holding drops the next jump, calls off one that is not past its commit point, and otherwise
@@ -115,6 +121,8 @@ class ControlTick {
 
  private:
   [[nodiscard]] double command_time(core::Stamp now) const noexcept;
+  [[nodiscard]] bool may_go_on_otherwise() const noexcept;
+  [[nodiscard]] std::optional<RestPlace> rest_place(double begin) const noexcept;
   void begin_next(const core::RobotState& state) noexcept;
   void settle(const core::RobotState& state, double duration) noexcept;
   void settle_again(const core::RobotState& state) noexcept;
@@ -129,13 +137,19 @@ class ControlTick {
                 core::JointCommand& command) noexcept;
   void bear_load(const core::RobotState& state, const core::JumpKnot& planned,
                  core::JointCommand& command) noexcept;
+  void bear_wrenches(const core::RobotState& state, const core::JointVector& base,
+                     core::JointCommand& command) noexcept;
   [[nodiscard]] double joint_scale() const noexcept;
   [[nodiscard]] double stray(const core::RobotState& state, double body_time) const noexcept;
   [[nodiscard]] MpcForm takeoff_form() const noexcept;
   [[nodiscard]] bool answer_is_fresh() const noexcept;
 
+  /// From touchdown until the feet have lost their speed [s].
+  static constexpr double kImpactTime = 0.015;
+
   ControlConfig config_;
   model::RobotParameters robot_;
+  WrenchLimiter limiter_;
   JumpSupervisor supervisor_;
   StandTarget stand_;
   core::JumpPlan plan_;

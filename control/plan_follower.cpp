@@ -170,4 +170,19 @@ void fill_reference_fixed(const core::JumpPlan& plan, double time, const PlanPla
   }
 }
 
+core::RobotState extrapolate(const core::RobotState& state, double delay, const core::JumpKnot& now,
+                             const core::JumpKnot& then) noexcept {
+  core::RobotState later = state;
+  later.stamp = state.stamp.after(delay);
+  later.v_WB += then.v_WB - now.v_WB;
+  later.w_WB += then.w_WB - now.w_WB;
+  later.dq += then.dq - now.dq;
+  later.p_WB += 0.5 * delay * (state.v_WB + later.v_WB);
+  const Eigen::Vector3d turn = 0.5 * delay * (state.w_WB + later.w_WB);
+  const double angle = turn.norm();
+  if (angle > 0.0) later.R_WB = Eigen::AngleAxisd(angle, turn / angle) * state.R_WB;
+  later.q += 0.5 * delay * (state.dq + later.dq);
+  return later;
+}
+
 }  // namespace hopscotch::control

@@ -41,4 +41,11 @@ void fill_reference(const core::JumpPlan& plan, double time, const PlanPlacement
 void fill_reference_fixed(const core::JumpPlan& plan, double time, const PlanPlacement& placement,
                           double step, core::ControlReference& reference) noexcept;
 
+/// The state `delay` later [s], its rates changing as the plan's do: what acts until then has been
+/// sent already.
+/// @param now, then The plan where the body is, and `delay` later.
+[[nodiscard]] core::RobotState extrapolate(const core::RobotState& state, double delay,
+                                           const core::JumpKnot& now,
+                                           const core::JumpKnot& then) noexcept;
+
 }  // namespace hopscotch::control

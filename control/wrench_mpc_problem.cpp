@@ -48,15 +48,6 @@ BodyState measured_state(const Heading& heading, const model::CompositeBody& bod
   return x;
 }
 
-/// A foot's wrench as the QP's input; Mx, which the foot cannot give, is dropped.
-FootInput foot_input(const core::Wrench& wrench, double yaw) {
-  const Eigen::Vector3d force = yaw_rotation(-yaw) * wrench.force;
-  const Eigen::Vector3d moment = yaw_rotation(-yaw) * wrench.moment;
-  FootInput input;
-  input << force.x(), force.y(), moment.y(), moment.z(), force.z();
-  return input;
-}
-
 /// What the velocities gain from the feet's reference wrenches in one step.
 Eigen::Vector<double, 6> reference_gain(const WrenchQpStage& stage, double mass) {
   Eigen::Vector<double, 6> gain = Eigen::Vector<double, 6>::Zero();
@@ -139,6 +130,14 @@ core::Wrench foot_wrench(const FootInput& input, double yaw) noexcept {
   const Eigen::Matrix3d R_WF = yaw_rotation(yaw);
   return {R_WF * Eigen::Vector3d(input(kForceX), input(kForceY), input(kForceZ)),
           R_WF * Eigen::Vector3d(0.0, input(kMomentY), input(kMomentZ))};
+}
+
+FootInput foot_input(const core::Wrench& wrench, double yaw) noexcept {
+  const Eigen::Vector3d force = yaw_rotation(-yaw) * wrench.force;
+  const Eigen::Vector3d moment = yaw_rotation(-yaw) * wrench.moment;
+  FootInput input;
+  input << force.x(), force.y(), moment.y(), moment.z(), force.z();
+  return input;
 }
 
 bool can_pose(const core::RobotState& state, const core::ControlReference& reference,

@@ -38,5 +38,7 @@ void pose_problem(const model::RobotParameters& robot, const core::RobotState& s
 
 /// The wrench in W of a foot whose frame has this yaw in W [rad].
 [[nodiscard]] core::Wrench foot_wrench(const FootInput& input, double yaw) noexcept;
+/// The inverse; Mx, which a foot cannot give, is dropped.
+[[nodiscard]] FootInput foot_input(const core::Wrench& wrench, double yaw) noexcept;
 
 }  // namespace hopscotch::control

@@ -14,16 +14,25 @@ bool ChainKkt::solve(const ChainProblem& problem, const KktInput& input, Eigen::
                      Eigen::VectorXd& multipliers) {
   if (!sweep_back(problem, input)) return false;
   direction.setZero();
+  if (layout_.steps().landed()) {
+    std::array<double, kLandingSize> start{};  // is fixed
+    start[kLandingLength] = rest_step_.at(start);
+    landing_forward(start, direction, multipliers);
+    return true;
+  }
   takeoff_forward(direction, multipliers);
   flight_forward(*input.terms, direction, multipliers);
-  landing_forward(problem, direction, multipliers);
+  landing_forward(touchdown_forward(problem, direction, multipliers), direction, multipliers);
   return true;
 }
 
 bool ChainKkt::sweep_back(const ChainProblem& problem, const KktInput& input) {
-  return landing_back(problem, input) && touchdown_back(problem, input) &&
-         flight_back(problem, input) && liftoff_back(problem, input) &&
-         takeoff_back(problem, input);
+  Quadratic<kLandingSize> landing;
+  if (!landing_back(problem, input, landing)) return false;
+  if (layout_.steps().landed()) return minimise(kLandingLength, kPivotMin, landing, rest_step_);
+  hand_to_touchdown(landing);
+  return touchdown_back(problem, input) && flight_back(problem, input) &&
+         liftoff_back(problem, input) && takeoff_back(problem, input);
 }
 
 bool ChainKkt::takeoff_back(const ChainProblem& problem, const KktInput& input) {

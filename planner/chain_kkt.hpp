@@ -21,7 +21,8 @@ struct KktInput {
 /// The Newton step of the chain: minimises the quadratic model
 ///   (g + J' slopes) dx + dx' (H + J' Sigma J + regularisation) dx / 2
 /// subject to the linearised equalities, by one backward and one forward sweep over the knots
-/// (Riccati recursion: landing, touchdown, flight, lift-off, takeoff). Equalities are eliminated
+/// (Riccati recursion: landing, touchdown, flight, lift-off, takeoff; of a jump that is down the
+/// first alone). Equalities are eliminated
 /// exactly, so no multipliers are factorised, and the curvature by each remaining variable tells
 /// whether the reduced Hessian is positive definite. Sized once; solving does not allocate.
 class ChainKkt {
@@ -62,7 +63,8 @@ class ChainKkt {
   };
 
   [[nodiscard]] bool sweep_back(const ChainProblem& problem, const KktInput& input);
-  [[nodiscard]] bool landing_back(const ChainProblem& problem, const KktInput& input);
+  [[nodiscard]] bool landing_back(const ChainProblem& problem, const KktInput& input,
+                                  Quadratic<kLandingSize>& q);
   [[nodiscard]] bool touchdown_back(const ChainProblem& problem, const KktInput& input);
   [[nodiscard]] bool flight_back(const ChainProblem& problem, const KktInput& input);
   [[nodiscard]] bool liftoff_back(const ChainProblem& problem, const KktInput& input);
@@ -86,7 +88,9 @@ class ChainKkt {
   void takeoff_forward(Eigen::VectorXd& dx, Eigen::VectorXd& multipliers) const;
   void flight_forward(const ChainTerms& terms, Eigen::VectorXd& dx,
                       Eigen::VectorXd& multipliers) const;
-  void landing_forward(const ChainProblem& problem, Eigen::VectorXd& dx,
+  [[nodiscard]] std::array<double, kLandingSize> touchdown_forward(
+      const ChainProblem& problem, Eigen::VectorXd& dx, Eigen::VectorXd& multipliers) const;
+  void landing_forward(std::array<double, kLandingSize> start, Eigen::VectorXd& dx,
                        Eigen::VectorXd& multipliers) const;
 
   ChainLayout layout_;
@@ -104,6 +108,7 @@ class ChainKkt {
   std::array<std::size_t, 3> touchdown_pivots_{};
   std::array<Affine<kTouchdownSize>, 3> after_;
   Affine<kTouchdownSize> landing_step_;
+  Affine<kLandingSize> rest_step_;  ///< The landing step of a jump that is down.
   // The last flight step solves for momentum, the level foot and the place of the ankle.
   Equalities<4, kFlightSize> arrival_;         ///< At touchdown.
   Equalities<4, kFlightSize> arrival_pulled_;  ///< At the knot before.

@@ -4,11 +4,13 @@ namespace hopscotch::planner {
 
 using namespace kkt;  // NOLINT(google-build-using-namespace): the pieces of this class
 
-bool ChainKkt::landing_back(const ChainProblem& problem, const KktInput& input) {
+/// @param[out] q Of the start of the landing, its slots of accelerations used up.
+bool ChainKkt::landing_back(const ChainProblem& problem, const KktInput& input,
+                            Quadratic<kLandingSize>& q) {
   const Diagonal diagonal{problem, input};
   const DecisionLayout& decision = layout_.decision();
   const int last = layout_.steps().landing - 1;
-  Quadratic<kLandingSize> q;  // of the end knot, which is fixed: nothing
+  q = {};  // of the end knot, which is fixed: nothing
   for (int k = last; k >= 0; --k) {
     LandingStage& stage = landing_[static_cast<std::size_t>(k)];
     const StepExpansion<kStanceDof>& step = input.terms->landing[static_cast<std::size_t>(k)];
@@ -35,12 +37,11 @@ bool ChainKkt::landing_back(const ChainProblem& problem, const KktInput& input) 
                input.slot_slopes->data() + layout_.landing_joints(k), q);
     if (k > 0) {
       diagonal.add_range(decision.landing(k), 6, 0, q);
-    } else {
+    } else if (!layout_.steps().landed()) {
       diagonal.add_range(decision.touchdown_rates(), 3, 3, q);
     }
   }
   diagonal.add(decision.landing_step(), kLandingLength, q);
-  hand_to_touchdown(q);
   return true;
 }
 
@@ -155,9 +156,9 @@ void ChainKkt::hand_to_flight(const TouchdownTerms& terms, const Quadratic<kTouc
   arrival_.row[2][kFootPitch] = 1.0;  // stays level
 }
 
-void ChainKkt::landing_forward(const ChainProblem& problem, Eigen::VectorXd& dx,
-                               Eigen::VectorXd& multipliers) const {
-  const DecisionLayout& decision = layout_.decision();
+/// @return the step of the first landing knot and of dt^l.
+std::array<double, ChainKkt::kLandingSize> ChainKkt::touchdown_forward(
+    const ChainProblem& problem, Eigen::VectorXd& dx, Eigen::VectorXd& multipliers) const {
   std::array<double, kTouchdownSize> z{};
   for (std::size_t i = 0; i < 15; ++i) {
     if (!is_after(i)) z[i] = dx(problem.touchdown_place()[i]);
@@ -170,11 +171,17 @@ void ChainKkt::landing_forward(const ChainProblem& problem, Eigen::VectorXd& dx,
   for (std::size_t r = 0; r < 3; ++r) {
     multipliers(layout_.touchdown() + 2 + static_cast<int>(r)) = nu[r];
   }
-  put(z, kAfter, 3, decision.touchdown_rates(), dx);
-  const double length = z[kTouchdownLandingStep];
-  dx(decision.landing_step()) = length;
-  std::array<double, kLandingSize> s{z[0], z[1], z[2], z[kAfter], z[kAfter + 1], z[kAfter + 2]};
-  s[kLandingLength] = length;
+  put(z, kAfter, 3, layout_.decision().touchdown_rates(), dx);
+  std::array<double, kLandingSize> start{z[0], z[1], z[2], z[kAfter], z[kAfter + 1], z[kAfter + 2]};
+  start[kLandingLength] = z[kTouchdownLandingStep];
+  return start;
+}
+
+/// @param s At the first landing knot.
+void ChainKkt::landing_forward(std::array<double, kLandingSize> s, Eigen::VectorXd& dx,
+                               Eigen::VectorXd& multipliers) const {
+  const DecisionLayout& decision = layout_.decision();
+  dx(decision.landing_step()) = s[kLandingLength];
   const int last = layout_.steps().landing - 1;
   std::array<double, 3> last_gap{};
   for (int k = 0; k < last; ++k) {

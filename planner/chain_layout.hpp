@@ -34,7 +34,7 @@ class ChainLayout {
   }
   [[nodiscard]] int touchdown_speeds() const { return clearance(steps_.flight - 1); }
   [[nodiscard]] int landing_rows(int step) const {
-    return touchdown_speeds() + 2 + kStanceRows * step;
+    return (steps_.landed() ? 0 : touchdown_speeds() + 2) + kStanceRows * step;
   }
   /// Of the knot before step `step`.
   [[nodiscard]] int landing_joints(int step) const {
@@ -51,7 +51,9 @@ class ChainLayout {
   [[nodiscard]] int flight_gap(int step) const { return liftoff() + 5 + (kFlightDof + 1) * step; }
   [[nodiscard]] int momentum(int step) const { return flight_gap(step) + kFlightDof; }
   [[nodiscard]] int touchdown() const { return flight_gap(steps_.flight); }
-  [[nodiscard]] int landing_gap(int step) const { return touchdown() + 5 + kStanceDof * step; }
+  [[nodiscard]] int landing_gap(int step) const {
+    return (steps_.landed() ? 0 : touchdown() + 5) + kStanceDof * step;
+  }
   [[nodiscard]] int equalities() const { return landing_gap(steps_.landing); }
 
   static constexpr int kStanceRows = MotorRows::kRows + GroundRows::kRows;

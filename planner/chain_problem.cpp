@@ -1,5 +1,7 @@
 #include "planner/chain_problem.hpp"
 
+#include <algorithm>
+
 namespace hopscotch::planner {
 
 namespace {
@@ -90,7 +92,7 @@ ChainTerms::ChainTerms(const StepCounts& steps)
       flight(static_cast<std::size_t>(steps.flight)),
       landing(static_cast<std::size_t>(steps.landing)),
       momentum(static_cast<std::size_t>(steps.flight)),
-      clearance(static_cast<std::size_t>(steps.flight - 1)) {}
+      clearance(static_cast<std::size_t>(std::max(0, steps.flight - 1))) {}
 
 ChainProblem::ChainProblem(const PlanarModel& model, const PlanarTask& task,
                            const DecisionLayout& layout)
@@ -101,8 +103,10 @@ ChainProblem::ChainProblem(const PlanarModel& model, const PlanarTask& task,
       touchdown_law_(touchdown_law(model, task)),
       stance_joints_(joint_rows<kStanceDof>(model.robot, model.config)),
       flight_joints_(joint_rows<kFlightDof>(model.robot, model.config)),
-      takeoff_step_(model.dynamics, takeoff_law(model, task, 0).motors,
-                    takeoff_law(model, task, 0).ground, kCostScale),
+      takeoff_step_(
+          model.dynamics, {motor_limits(model.robot, model.config.reserves)},
+          ground_rows(model.dynamics.chain(), model.config, model.config.takeoff_cop_margin),
+          kCostScale),
       flight_step_(model.dynamics, flight_law(model, task).motors, {}, kCostScale),
       landing_step_(model.dynamics, landing_law(model, task, 0).motors,
                     landing_law(model, task, 0).ground, kCostScale),
@@ -172,11 +176,16 @@ void ChainProblem::write_bounds() {
     write(landing_laws_[static_cast<std::size_t>(k)], layout_.landing_rows(k), StanceLaw::kRows);
     write(stance_joints_, layout_.landing_joints(k), kStanceDof);
   }
-  const int speeds = layout_.touchdown_speeds();
-  lower_(speeds) = -touchdown_law_.speed_along;
-  upper_(speeds) = touchdown_law_.speed_along;
-  lower_(speeds + 1) = -touchdown_law_.speed_down;
-  upper_(speeds + 1) = -touchdown_law_.speed_down_min;
+  if (steps.landed()) {  // the start is as it is
+    lower_.segment<kStanceDof>(layout_.landing_joints(0)).setConstant(-kUnbounded);
+    upper_.segment<kStanceDof>(layout_.landing_joints(0)).setConstant(kUnbounded);
+  } else {
+    const int speeds = layout_.touchdown_speeds();
+    lower_(speeds) = -touchdown_law_.speed_along;
+    upper_(speeds) = touchdown_law_.speed_along;
+    lower_(speeds + 1) = -touchdown_law_.speed_down;
+    upper_(speeds + 1) = -touchdown_law_.speed_down_min;
+  }
   for (int i = 0; i < layout_.variables(); ++i) {
     if (is_fixed(i)) continue;
     lower_(layout_.variable(i)) = bounds_.lower(i);
@@ -251,6 +260,7 @@ double ChainProblem::values(const Eigen::VectorXd& x, Eigen::VectorXd& slots,
 
 double ChainProblem::transition_values(const Eigen::VectorXd& x, Eigen::VectorXd& slots,
                                        Eigen::VectorXd& equalities) const {
+  if (layout_.steps().landed()) return 0.0;
   std::array<double, LiftoffLaw::kRows> liftoff;
   (void)liftoff_law_(gathered(x, liftoff_place_), liftoff);
   std::copy(liftoff.begin(), liftoff.end(), equalities.data() + layout_.liftoff());
@@ -311,6 +321,7 @@ void ChainProblem::expand(const Eigen::VectorXd& x, const Eigen::VectorXd& slot,
 
 void ChainProblem::expand_transitions(const Eigen::VectorXd& x, const Eigen::VectorXd& slot,
                                       const Eigen::VectorXd& equality, ChainTerms& terms) const {
+  if (layout_.steps().landed()) return;
   const KnotBlock<LiftoffLaw, 11> liftoff(liftoff_law_, liftoff_place_);
   const std::array<double, 11> at_liftoff = gathered(x, liftoff_place_);
   std::array<double, 11> no_cost{};
@@ -364,14 +375,20 @@ void ChainProblem::gradient(const ChainTerms& terms, const Eigen::VectorXd& slot
                   out);
     scatter_joints(stance_joints_, place.at.data(), slot.data() + layout_.landing_joints(k), out);
   }
+  if (!steps.landed()) add_transition_gradient(terms, slot, equality, out);
+  add_smoothness_gradient(terms, out);
+  out(layout_.variables()) = 0.0;
+}
+
+void ChainProblem::add_transition_gradient(const ChainTerms& terms, const Eigen::VectorXd& slot,
+                                           const Eigen::VectorXd& equality,
+                                           Eigen::VectorXd& out) const {
   scatter_rows(terms.liftoff.slope, liftoff_place_, equality.data() + layout_.liftoff(), out);
   std::array<double, TouchdownLaw::kRows> touchdown;
   std::copy_n(equality.data() + layout_.touchdown(), 5, touchdown.begin());
   std::copy_n(slot.data() + layout_.touchdown_speeds(), 2, touchdown.begin() + 5);
   scatter_rows(terms.touchdown.slope, touchdown_place_, touchdown.data(), out);
   for (std::size_t i = 0; i < 15; ++i) out(touchdown_place_[i]) += terms.touchdown.gradient[i];
-  add_smoothness_gradient(terms, out);
-  out(layout_.variables()) = 0.0;
 }
 
 void ChainProblem::add_smoothness_gradient(const ChainTerms& terms, Eigen::VectorXd& out) const {
@@ -415,7 +432,7 @@ void ChainProblem::slots_along(const ChainTerms& terms, const Eigen::VectorXd& d
                out + layout_.landing_rows(k));
     joint_values(stance_joints_, knot_before(place, direction), out + layout_.landing_joints(k));
   }
-  for (std::size_t r = 0; r < 2; ++r) {
+  for (std::size_t r = 0; r < 2 && !steps.landed(); ++r) {
     out[layout_.touchdown_speeds() + static_cast<int>(r)] =
         along_row(terms.touchdown.slope[5 + r], touchdown_place_, direction);
   }

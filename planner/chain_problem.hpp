@@ -110,6 +110,9 @@ class ChainProblem {
   [[nodiscard]] double smoothness_value(const Eigen::VectorXd& point) const;
   void expand_transitions(const Eigen::VectorXd& point, const Eigen::VectorXd& slot_multipliers,
                           const Eigen::VectorXd& equality_multipliers, ChainTerms& terms) const;
+  void add_transition_gradient(const ChainTerms& terms, const Eigen::VectorXd& slot_weights,
+                               const Eigen::VectorXd& equality_weights,
+                               Eigen::VectorXd& gradient) const;
   void add_smoothness_gradient(const ChainTerms& terms, Eigen::VectorXd& gradient) const;
 
   ChainLayout layout_;

@@ -127,8 +127,10 @@ void ChainSolver::start_from(const ChainProblem& problem, double push) {
 }
 
 int ChainSolver::tightest_slot() const {
-  const int flight_time = layout_.variable(layout_.decision().flight_step());
-  const int landing_time = layout_.variable(layout_.decision().landing_step());
+  const DecisionLayout& decision = layout_.decision();
+  const int landing_time = layout_.variable(decision.landing_step());
+  const int flight_time =
+      layout_.steps().landed() ? landing_time : layout_.variable(decision.flight_step());
   int tightest = 0;
   double most = 0.0;
   for (int i = 0; i < layout_.slots(); ++i) {

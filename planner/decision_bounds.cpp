@@ -48,6 +48,16 @@ void fix_knot(const LinkState& state, int at, Writer& writer) {
   }
 }
 
+void bound_landing(const PlanarModel& model, const PlanarTask& task, const ShankRange& target,
+                   const DecisionLayout& layout, Writer& writer) {
+  for (int k = 1; k < layout.steps().landing; ++k) {
+    bound_knot(model, target, layout.landing(k), layout.landing(k) + kStanceDof, writer);
+  }
+  fix_knot({task.final_posture, {}}, layout.landing(layout.steps().landing), writer);
+  writer.set(layout.landing_step(), model.config.landing_step_min,
+             model.config.landing_step_longest(task.distance, task.height));
+}
+
 void bound_flight(const PlanarModel& model, const ShankRange& landing_shank,
                   const DecisionLayout& layout, Writer& writer) {
   const PlannerConfig& config = model.config;
@@ -71,31 +81,35 @@ void bound_flight(const PlanarModel& model, const ShankRange& landing_shank,
 
 DecisionBounds decision_bounds(const PlanarModel& model, const PlanarTask& task,
                                const DecisionLayout& layout) {
+  Writer writer;
+  writer.bounds.lower = Eigen::VectorXd::Zero(layout.size());
+  writer.bounds.upper = Eigen::VectorXd::Zero(layout.size());
+  const ShankRange target = landed_shank_range(model, task);
+  bound_landing(model, task, target, layout, writer);
+  if (layout.steps().landed()) {
+    fix_knot(task.start, layout.landing(0), writer);
+    return writer.bounds;
+  }
   const double sole_height = model.dynamics.chain().sole_height;
   ShankRange start = shank_range(model, task.terrain, {model.ankle_x(), sole_height});
   // Where the robot stands its shanks touch nothing, whatever the map says.
   start.lower = std::min(start.lower, task.start.pitch[model::kShank] - kStartRoom);
-  const ShankRange target = landed_shank_range(model, task);
-  Writer writer;
-  writer.bounds.lower = Eigen::VectorXd::Zero(layout.size());
-  writer.bounds.upper = Eigen::VectorXd::Zero(layout.size());
   for (int k = 1; k <= layout.steps().takeoff; ++k) {
     bound_knot(model, start, layout.takeoff(k), layout.takeoff(k) + kStanceDof, writer);
   }
   bound_flight(model, target, layout, writer);
   bound_knot(model, target, layout.flight(layout.steps().flight), layout.touchdown_rates(), writer);
-  for (int k = 1; k <= layout.steps().landing; ++k) {
-    bound_knot(model, target, layout.landing(k), layout.landing(k) + kStanceDof, writer);
-  }
   fix_knot(task.start, layout.takeoff(0), writer);
-  fix_knot({task.final_posture, {}}, layout.landing(layout.steps().landing), writer);
-  writer.set(layout.landing_step(), model.config.landing_step_min,
-             model.config.landing_step_longest(task.distance, task.height));
   return writer.bounds;
 }
 
 Eigen::VectorXd decision_sizes(const DecisionLayout& layout) {
   Eigen::VectorXd size = Eigen::VectorXd::Ones(layout.size());
+  for (int k = 1; k <= layout.steps().landing; ++k) {
+    size.segment(layout.landing(k) + kStanceDof, kStanceDof).setConstant(kTypicalRate);
+  }
+  size(layout.landing_step()) = kTypicalStep;
+  if (layout.steps().landed()) return size;
   for (int k = 0; k <= layout.steps().takeoff; ++k) {
     size.segment(layout.takeoff(k) + kStanceDof, kStanceDof).setConstant(kTypicalRate);
   }
@@ -103,11 +117,7 @@ Eigen::VectorXd decision_sizes(const DecisionLayout& layout) {
     size.segment(layout.flight(k) + kFlightDof, kFlightDof).setConstant(kTypicalRate);
   }
   size.segment(layout.touchdown_rates(), kStanceDof).setConstant(kTypicalRate);
-  for (int k = 1; k <= layout.steps().landing; ++k) {
-    size.segment(layout.landing(k) + kStanceDof, kStanceDof).setConstant(kTypicalRate);
-  }
   size(layout.flight_step()) = kTypicalStep;
-  size(layout.landing_step()) = kTypicalStep;
   return size;
 }
 

@@ -35,7 +35,7 @@ std::array<int, 13> DecisionLayout::landing_step_variables(int k) const {
   for (const int knot : {k, k + 1}) {
     for (const int block : {0, 1}) {
       for (int d = 0; d < kStanceDof; ++d) {
-        if (knot > 0) {
+        if (knot > 0 || steps_.landed()) {
           at[next++] = landing(knot) + block * kStanceDof + d;
         } else {
           at[next++] = block == 0 ? flight(steps_.flight) + d : touchdown_rates() + d;

@@ -6,11 +6,14 @@
 
 namespace hopscotch::planner {
 
-/// Number of steps of each phase.
+/// Number of steps of each phase. Without a flight there is no takeoff either: what is left of a
+/// jump that is down is a landing that starts in stance.
 struct StepCounts {
   int takeoff = 0;
   int flight = 0;
   int landing = 0;
+
+  [[nodiscard]] bool landed() const { return flight == 0; }
 };
 
 /// Coordinates of the legs and trunk at a knot. The knee is relative, so that its range and speed
@@ -37,7 +40,8 @@ template <typename T>
 /// Who lives where in the decision vector, eq. (7). Per knot only coordinates y and rates v: joint
 /// torques, ground force and moment are explicit functions of two neighbouring knots, so they are
 /// rows, not variables. The last takeoff knot is the first flight knot; the last flight knot and
-/// the first landing knot share y, not v (touchdown).
+/// the first landing knot share y, not v (touchdown). Of a jump that is down, only landing knots
+/// from 0 on and dt^l are there.
 class DecisionLayout {
  public:
   explicit DecisionLayout(const StepCounts& steps) : steps_(steps) {}
@@ -53,8 +57,9 @@ class DecisionLayout {
   }
   /// Rates of the first landing knot, 3 numbers; its y is that of the last flight knot.
   [[nodiscard]] int touchdown_rates() const { return flight(steps_.flight + 1); }
-  /// Landing knot 1 to `landing`: y at +0, v at +3.
+  /// Landing knot 1, if landed 0, to `landing`: y at +0, v at +3.
   [[nodiscard]] int landing(int knot) const {
+    if (steps_.landed()) return kStanceSize * knot;
     return touchdown_rates() + kStanceDof + kStanceSize * (knot - 1);
   }
   /// Whole-body CoM at lift-off in S: x, z [m].
@@ -65,7 +70,9 @@ class DecisionLayout {
   [[nodiscard]] int momentum() const { return liftoff_com() + 4; }
   /// Step lengths dt^f and dt^l [s].
   [[nodiscard]] int flight_step() const { return liftoff_com() + 5; }
-  [[nodiscard]] int landing_step() const { return liftoff_com() + 6; }
+  [[nodiscard]] int landing_step() const {
+    return steps_.landed() ? landing(steps_.landing + 1) : liftoff_com() + 6;
+  }
 
   /// Both ends of takeoff step `k`: y, v, y, v.
   [[nodiscard]] std::array<int, 12> takeoff_step_variables(int k) const;

@@ -11,8 +11,10 @@ namespace hopscotch::planner {
 NonlinearProgram jump_program(const PlanarModel& model, const PlanarTask& task,
                               const DecisionLayout& layout) {
   BlockList blocks;
-  add_takeoff(model, task, layout, blocks);
-  add_flight(model, task, layout, blocks);
+  if (!layout.steps().landed()) {
+    add_takeoff(model, task, layout, blocks);
+    add_flight(model, task, layout, blocks);
+  }
   add_landing(model, task, layout, blocks);
   return {layout.size(), std::move(blocks)};
 }

@@ -47,12 +47,16 @@ void add_landing(const PlanarModel& model, const PlanarTask& task, const Decisio
   const JointRows<kStanceDof> joints = joint_rows<kStanceDof>(model.robot, model.config);
   using Step = StepBlock<StanceLaw, kStanceDof, StepLength::free>;
   using Knot = KnotBlock<JointRows<kStanceDof>, 2 * kStanceDof>;
-  blocks.push_back(std::make_unique<KnotBlock<TouchdownLaw, 15>>(touchdown_law(model, task),
-                                                                 touchdown_variables(layout)));
+  const bool landed = layout.steps().landed();
+  if (!landed) {
+    blocks.push_back(std::make_unique<KnotBlock<TouchdownLaw, 15>>(touchdown_law(model, task),
+                                                                   touchdown_variables(layout)));
+  }
   for (int k = 0; k < layout.steps().landing; ++k) {
     const std::array<int, 13> ends = layout.landing_step_variables(k);
     blocks.push_back(
         std::make_unique<Step>(landing_law(model, task, k), ends, model.config.landing_share(k)));
+    if (landed && k == 0) continue;  // the start is as it is
     std::array<int, 6> before{};
     std::copy(ends.begin(), ends.begin() + 6, before.begin());
     blocks.push_back(std::make_unique<Knot>(joints, before));

@@ -39,6 +39,22 @@ core::JumpKnot lift_straight(const PlanarModel& model, const PlanarMotion& motio
   return knot;
 }
 
+/// @return false if a leg cannot reach so far.
+bool lift_aside(const PlanarModel& model, const PlanarMotion& motion, const SideTarget& side,
+                core::JumpPlan& plan) {
+  SideStep step(model, motion, side.lateral, side.yaw);
+  const SideLift lift(model, motion, step);
+  for (int pass = 0; pass < kMomentumPasses; ++pass) {
+    const std::vector<double> momentum = lift.flight_momentum();
+    if (momentum.empty()) return false;
+    step.account_for(momentum);
+  }
+  for (std::size_t i = 0; i < motion.knots.size(); ++i) {
+    if (!lift.lift(motion.knots[i], plan.knots[i])) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool SideTarget::is_straight() const {
@@ -59,26 +75,18 @@ bool lift_to_3d(const PlanarModel& model, const PlanarMotion& motion,
                 const core::LandingTarget& target, core::JumpPlan& plan) {
   HOPSCOTCH_CHECK(motion.knots.size() <= core::JumpPlan::kMaxKnots);
   const SideTarget side = side_target(target);
-  const bool straight = side.is_straight();
-  SideStep step(model, motion, side.lateral, side.yaw);
-  const SideLift lift(model, motion, step);
-  for (int pass = 0; pass < kMomentumPasses && !straight; ++pass) {
-    const std::vector<double> momentum = lift.flight_momentum();
-    if (momentum.empty()) return false;
-    step.account_for(momentum);
-  }
   plan.knot_count = motion.knots.size();
-  for (std::size_t i = 0; i < motion.knots.size(); ++i) {
-    const PlanarKnot& from = motion.knots[i];
-    core::JumpKnot& knot = plan.knots[i];
-    if (straight) {
-      knot = lift_straight(model, motion, from);
-    } else if (!lift.lift(from, knot)) {
-      return false;
+  if (side.is_straight()) {
+    for (std::size_t i = 0; i < motion.knots.size(); ++i) {
+      plan.knots[i] = lift_straight(model, motion, motion.knots[i]);
     }
-    knot.time = from.time;
-    knot.dt = from.dt;
-    turn_into_world(target, knot);
+  } else if (!lift_aside(model, motion, side, plan)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < motion.knots.size(); ++i) {
+    plan.knots[i].time = motion.knots[i].time;
+    plan.knots[i].dt = motion.knots[i].dt;
+    turn_into_world(target, plan.knots[i]);
   }
   plan.liftoff_time = motion.liftoff_time;
   plan.touchdown_time = motion.touchdown_time;

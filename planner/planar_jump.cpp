@@ -26,7 +26,7 @@ LinkState flight_state(const DecisionLayout& layout, const Eigen::VectorXd& x, i
 }
 
 LinkState landing_state(const DecisionLayout& layout, const Eigen::VectorXd& x, int k) {
-  if (k == 0) {
+  if (k == 0 && !layout.steps().landed()) {
     return {stance_links(x, layout.flight(layout.steps().flight)),
             stance_links(x, layout.touchdown_rates())};
   }
@@ -48,15 +48,10 @@ void append(core::JumpPhase phase, double dt, const LinkState& from, const LinkS
   motion.knots.push_back(knot);
 }
 
-}  // namespace
-
-PlanarMotion motion_from_decision(const PlanarModel& model, const PlanarTask& task,
-                                  const DecisionLayout& layout, const Eigen::VectorXd& x) {
+/// All until the feet are down: the flight's parabola, the steps of takeoff and flight.
+void append_jump(const PlanarModel& model, const DecisionLayout& layout, const Eigen::VectorXd& x,
+                 PlanarMotion& motion) {
   const StepCounts& steps = layout.steps();
-  const double sole = model.dynamics.chain().sole_height;
-  PlanarMotion motion;
-  motion.start_ankle = {model.ankle_x(), sole};
-  motion.target_ankle = {task.distance + model.ankle_x(), task.height + sole};
   motion.liftoff_com = {x(layout.liftoff_com()), x(layout.liftoff_com() + 1)};
   motion.liftoff_velocity = {x(layout.liftoff_velocity()), x(layout.liftoff_velocity() + 1)};
   motion.momentum = x(layout.momentum());
@@ -70,6 +65,18 @@ PlanarMotion motion_from_decision(const PlanarModel& model, const PlanarTask& ta
            flight_state(layout, x, k + 1), motion);
   }
   motion.touchdown_time = motion.knots.back().time + motion.knots.back().dt;
+}
+
+}  // namespace
+
+PlanarMotion motion_from_decision(const PlanarModel& model, const PlanarTask& task,
+                                  const DecisionLayout& layout, const Eigen::VectorXd& x) {
+  const StepCounts& steps = layout.steps();
+  const double sole = model.dynamics.chain().sole_height;
+  PlanarMotion motion;
+  motion.start_ankle = {model.ankle_x(), sole};
+  motion.target_ankle = {task.distance + model.ankle_x(), task.height + sole};
+  if (!steps.landed()) append_jump(model, layout, x, motion);
   for (int k = 0; k < steps.landing; ++k) {
     const double step = model.config.landing_share(k) * x(layout.landing_step());
     append(core::JumpPhase::landing, step, landing_state(layout, x, k),

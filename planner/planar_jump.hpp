@@ -20,7 +20,7 @@ struct LinkState {
 
 /// One jump in the sagittal plane, frame S with the start's sole centre at its origin.
 struct PlanarTask {
-  LinkState start;                           ///< Feet flat at the origin of S.
+  LinkState start;  ///< Feet flat at the origin of S; of a jump that is down, at the target.
   model::LinkArray<double> final_posture{};  ///< At rest, feet flat at the target [rad].
   double distance = 0.0;                     ///< Sole centre to sole centre [m].
   double height = 0.0;                       ///< Of the target sole [m].
@@ -80,7 +80,8 @@ struct PlanarInstant {
   double moment = 0.0;                           ///< Of that force about the ankle axis [N·m].
 };
 
-/// The solved motion: takeoff, flight and landing knots in order; the last one is at rest.
+/// The solved motion: takeoff, flight and landing knots in order, of a jump that is down the latter
+/// alone; the last one is at rest.
 struct PlanarMotion {
   std::vector<PlanarKnot> knots;
   model::PlanarVector<double> start_ankle{};       ///< During takeoff, in S [m].

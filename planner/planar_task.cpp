@@ -132,18 +132,25 @@ std::optional<Refusal> check_way(const core::LandingTarget& target, const Smooth
   return std::nullopt;
 }
 
-std::optional<Refusal> check_start(const PlanarModel& model, const PlanRequest& request) {
+/// Middle of the soles where they should be [m].
+Eigen::Vector3d place_of(FeetPlace feet, const core::LandingTarget& target) {
+  if (feet == FeetPlace::origin) return target.p_WS;
+  return 0.5 * (target.X_WF[0].translation() + target.X_WF[1].translation());
+}
+
+std::optional<Refusal> check_start(const PlanarModel& model, const PlanRequest& request,
+                                   FeetPlace feet) {
   const core::RobotState& start = request.start;
   if (!is_finite(start)) {
     return Refusal{Reason::bad_sensor_value, "start state is not a finite number"};
   }
   const std::array<Eigen::Isometry3d, core::kLegs> soles = model::sole_poses(model.robot, start);
   const Eigen::Vector3d middle = 0.5 * (soles[0].translation() + soles[1].translation());
-  const double offset = (middle - request.target.p_WS).norm();
+  const double offset = (middle - place_of(feet, request.target)).norm();
   if (offset > kStartOffsetMax) {
     return Refusal{Reason::target_malformed,
-                   sentence("soles are %.3f m from the origin of the jump, at most %.3f m", offset,
-                            kStartOffsetMax)};
+                   sentence("soles are %.3f m from the %s of the jump, at most %.3f m", offset,
+                            feet == FeetPlace::origin ? "origin" : "target", kStartOffsetMax)};
   }
   const Eigen::Vector3d rpy = model::rpy_from_rotation(start.R_WB);
   if (std::abs(rpy.x()) > kTiltMax || std::abs(rpy.y()) > kTiltMax) {
@@ -157,11 +164,12 @@ std::optional<Refusal> check_start(const PlanarModel& model, const PlanRequest& 
 
 }  // namespace
 
-core::Result<PlanarTask> planar_task(const PlanarModel& model, const PlanRequest& request) {
+core::Result<PlanarTask> planar_task(const PlanarModel& model, const PlanRequest& request,
+                                     FeetPlace feet) {
   const core::LandingTarget& target = request.target;
   if (std::optional<Refusal> refusal = check_target(model.config, target)) return *refusal;
   if (std::optional<Refusal> refusal = check_support(model, target)) return *refusal;
-  if (std::optional<Refusal> refusal = check_start(model, request)) return *refusal;
+  if (std::optional<Refusal> refusal = check_start(model, request, feet)) return *refusal;
   const std::optional<model::StandPose> end = model::stand_pose(model.robot, request.final_posture);
   if (!end) return Refusal{Reason::out_of_reach, "the legs cannot reach the final posture"};
   const double half = 0.5 * (model.robot.toe + model.robot.heel);

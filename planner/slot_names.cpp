@@ -47,12 +47,13 @@ std::string_view knot_name(int at, int dof) {
 }
 
 std::string_view variable_name(const DecisionLayout& layout, int at) {
+  if (at == layout.landing_step()) return "landing time";
+  if (layout.steps().landed()) return knot_name(at, kStanceDof);
   if (at < layout.flight(1)) return knot_name(at, kStanceDof);
   if (at < layout.touchdown_rates()) return knot_name(at - layout.flight(1), kFlightDof);
   if (at < layout.landing(1)) return cyclic(kRateNames, at - layout.touchdown_rates(), kStanceDof);
   if (at < layout.liftoff_com()) return knot_name(at - layout.landing(1), kStanceDof);
   if (at == layout.flight_step()) return "flight time";
-  if (at == layout.landing_step()) return "landing time";
   return "lift-off";
 }
 

@@ -340,30 +340,55 @@ TEST(Scenario, AHardPushInFlightIsSeenAsAFall) {
   EXPECT_EQ(result.falls, 1);
 }
 
-/// The rest of a takeoff from where the robot is, at least 50 times a second.
-TEST(Replanning, OfATakeoffIsInTimeAndLandsAtTheTarget) {
-  constexpr double kRate = 50.0;  // [1/s]
+/// What is left of jumps, planned from where the robot is.
+struct ReplannedJumps {
+  int replanned = 0;
+  int ticks = 0;  ///< In which a rest could be planned.
+  RunResult result;
+};
+
+/// @param may_replan Of a tick.
+template <typename Predicate>
+ReplannedJumps run_replanned(bool takeoff, bool landing, const Predicate& may_replan) {
   RunRequest request = request_of(
       sim::Scenario::load(std::string(kConfig) + "scenarios/flat-leaps.yaml"), Eyes::truth, 4711);
-  request.config.runtime.replanning = true;
+  request.config.runtime.takeoff_replanning = takeoff;
+  request.config.runtime.landing_replanning = landing;
   request.jumps_max = 2;
   LockstepRun run(request);
-  int replanned = 0;
-  int pushing_off = 0;  // ticks from the first jump's beginning on
+  ReplannedJumps jumps;
   while (run.step([&](const TickRecord& tick) {
-    replanned += tick.events.replanned ? 1 : 0;
-    const bool leaves = tick.status.plan_time > tick.plan.liftoff_time - 0.05;
-    pushing_off += core::is_pushing_off(tick.status.phase) && !leaves ? 1 : 0;
+    jumps.replanned += tick.events.replanned ? 1 : 0;
+    jumps.ticks += may_replan(tick) ? 1 : 0;
   })) {
   }
-  EXPECT_GE(replanned, kRate * 0.001 * pushing_off);
   EXPECT_EQ(run.pipeline().late_results(), 0U);
-  const RunResult result = run.result();
-  EXPECT_EQ(result.falls, 0) << result.reason;
-  ASSERT_EQ(result.jumps.size(), 2U);
-  for (const JumpResult& jump : result.jumps) {
+  jumps.result = run.result();
+  EXPECT_EQ(jumps.result.falls, 0) << jumps.result.reason;
+  EXPECT_EQ(jumps.result.jumps.size(), 2U);
+  for (const JumpResult& jump : jumps.result.jumps) {
     EXPECT_NEAR(jump.landing.distance, jump.target.distance, 0.03);
   }
+  return jumps;
+}
+
+constexpr double kReplanRate = 50.0;  // at least [1/s]
+
+TEST(Replanning, OfATakeoffIsInTimeAndLandsAtTheTarget) {
+  const ReplannedJumps jumps = run_replanned(true, false, [](const TickRecord& tick) {
+    const bool leaves = tick.status.plan_time > tick.plan.liftoff_time - 0.05;
+    return core::is_pushing_off(tick.status.phase) && !leaves;
+  });
+  EXPECT_GE(jumps.replanned, kReplanRate * 0.001 * jumps.ticks);
+}
+
+TEST(Replanning, OfALandingIsInTimeAndEndsAtRest) {
+  const ReplannedJumps jumps = run_replanned(false, true, [](const TickRecord& tick) {
+    const double since = tick.status.plan_time - tick.plan.touchdown_time;
+    const double left = tick.plan.duration - tick.status.plan_time;
+    return tick.status.phase == core::RobotPhase::landing && since > 0.03 && left > 0.15;
+  });
+  EXPECT_GE(jumps.replanned, kReplanRate * 0.001 * jumps.ticks);
 }
 
 }  // namespace

@@ -43,6 +43,11 @@ inline ControlConfig test_config() {
   config.anchor_time = 0.15;
   config.settle_time = 0.4;
   config.fixed_step = 0.03;
+  config.wrench_mpc.friction = 0.5;
+  config.wrench_mpc.cop_toe = 0.06;
+  config.wrench_mpc.cop_heel = 0.03;
+  config.wrench_mpc.yaw_moment_arm = 0.03;
+  config.wrench_mpc.max_normal_force = 500.0;
   return config;
 }
 

@@ -5,6 +5,7 @@
 #include "control/torque_law.hpp"
 #include "core/allocation_count.hpp"
 #include "model/kinematics.hpp"
+#include "model/motor.hpp"
 #include "model/rigid_body.hpp"
 #include "tests/unit/control/control_tick_fixture.hpp"
 
@@ -74,6 +75,27 @@ TEST_F(ControlTickTest, StandingTorqueHoldsTheWeight) {
   const double drop =
       model::composite_body(robot_, state_).p_WG.z() - model::composite_body(robot_, sunk).p_WG.z();
   EXPECT_NEAR(command.tau.dot(sunk.q - state_.q), -weight * drop, 1e-4 * weight * h);
+}
+
+/// The drives get no more to do than they can, whatever the MPC asks for; the status says what of
+/// it the feet are to bear.
+TEST_F(ControlTickTest, ALoadThatTheMotorsCannotHoldIsTakenBack) {
+  ControlTick control = standing();
+  state_.q[core::joint_index(core::Leg::left, core::Joint::knee)] -= 0.1;  // the PD acts too
+  step(control);
+  MpcAnswer answer{.stamp = state_.stamp, .status = MpcStatus::solved, .form = MpcForm::full};
+  for (core::Wrench& wrench : answer.wrenches) wrench = {{60.0, 0.0, 480.0}, {0.0, -20.0, 0.0}};
+  control.answer(answer);
+  const core::JointCommand command = step(control);
+  const core::JointVector demand = command.tau + command.kp.cwiseProduct(command.q - state_.q) +
+                                   command.kd.cwiseProduct(command.dq - state_.dq);
+  for (const core::Leg leg : core::kAllLegs) {
+    const core::LegVector of_leg = demand.segment<core::kJointsPerLeg>(core::leg_offset(leg));
+    const core::LegVector given = model::saturate(robot_, of_leg, core::LegVector::Zero());
+    EXPECT_LT((given - of_leg).cwiseAbs().maxCoeff(), 1e-3);
+    EXPECT_LT(control.status().wrenches[core::index(leg)].force.z(), 480.0);
+    EXPECT_GT(control.status().wrenches[core::index(leg)].force.z(), 100.0);
+  }
 }
 
 TEST_F(ControlTickTest, AnswersOfAnotherPhaseOrTooOldAreNotUsed) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <utility>
+#include <cmath>
 #include <vector>
 
 #include "planner/chain_problem.hpp"
@@ -29,7 +29,7 @@ class RowPlaces {
       slots(layout.takeoff_rows(k), ChainLayout::kStanceRows);
       slots(layout.takeoff_joints(k), 3);
     }
-    equalities(layout.liftoff(), 5);
+    if (!steps.landed()) equalities(layout.liftoff(), 5);
     for (int k = 0; k < steps.flight; ++k) {
       equalities(layout.flight_gap(k), 4);
       slots(layout.flight_rows(k), ChainLayout::kFlightRows);
@@ -37,8 +37,10 @@ class RowPlaces {
       equalities(layout.momentum(k), 1);
       if (k + 1 < steps.flight) slots(layout.clearance(k), ClearanceLaw::kRows);
     }
-    equalities(layout.touchdown(), 5);
-    slots(layout.touchdown_speeds(), 2);
+    if (!steps.landed()) {
+      equalities(layout.touchdown(), 5);
+      slots(layout.touchdown_speeds(), 2);
+    }
     for (int k = 0; k < steps.landing; ++k) {
       equalities(layout.landing_gap(k), 3);
       slots(layout.landing_rows(k), ChainLayout::kStanceRows);
@@ -73,11 +75,40 @@ class RowPlaces {
   std::vector<RowPlace> list_;
 };
 
-/// Two jumps, each near its guess but off it, as blocks and as a chain.
-class ChainTest : public testing::TestWithParam<std::pair<double, double>> {
+/// A jump, or what is left of its landing.
+struct ChainCase {
+  double distance;  ///< [m]
+  double height;    ///< [m]
+  int landed_steps = 0;
+
+  [[nodiscard]] PlannerConfig config() const {
+    PlannerConfig config = shipped_config();
+    if (landed_steps > 0) config.steps = {0, 0, landed_steps};
+    return config;
+  }
+};
+
+/// Jumps, each near its guess but off it, as blocks and as a chain.
+class ChainTest : public testing::TestWithParam<ChainCase> {
  protected:
+  /// From the start to the final posture at rest, knot after knot.
+  [[nodiscard]] Eigen::VectorXd landing_guess() const {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(layout_.size());
+    const auto start = coordinates_from_links(task_.start.pitch);
+    const auto end = coordinates_from_links(task_.final_posture);
+    const int steps = layout_.steps().landing;
+    for (int k = 0; k <= steps; ++k) {
+      for (std::size_t d = 0; d < kStanceDof; ++d) {
+        x(layout_.landing(k) + static_cast<int>(d)) =
+            std::lerp(start[d], end[d], static_cast<double>(k) / steps);
+      }
+    }
+    x(layout_.landing_step()) = 0.02;
+    return x;
+  }
   [[nodiscard]] Eigen::VectorXd noisy_point(unsigned seed) const {
-    Eigen::VectorXd x = kinematic_guess(model_, task_, layout_);
+    Eigen::VectorXd x =
+        layout_.steps().landed() ? landing_guess() : kinematic_guess(model_, task_, layout_);
     const std::vector<double> noise = random_point(static_cast<std::size_t>(x.size()) + 1, seed);
     const Eigen::VectorXd sizes = decision_sizes(layout_);
     for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -102,9 +133,9 @@ class ChainTest : public testing::TestWithParam<std::pair<double, double>> {
     return out;
   }
 
-  PlanarModel model_ = shipped_model();
+  PlanarModel model_{hector(), GetParam().config()};
   DecisionLayout layout_{model_.config.steps};
-  PlanarTask task_ = task(model_, GetParam().first, GetParam().second);
+  PlanarTask task_ = task(model_, GetParam().distance, GetParam().height);
   ChainProblem problem_{model_, task_, layout_};
   ChainTerms terms_{layout_.steps()};
   NonlinearProgram program_ = jump_program(model_, task_, layout_);

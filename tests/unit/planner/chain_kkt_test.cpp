@@ -97,7 +97,8 @@ TEST_P(ChainKktTest, RefusesAHessianThatIsNotPositive) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Jumps, ChainKktTest,
-                         testing::Values(std::pair{0.40, 0.10}, std::pair{0.35, -0.20}));
+                         testing::Values(ChainCase{0.40, 0.10}, ChainCase{0.35, -0.20},
+                                         ChainCase{0.40, 0.0, 12}, ChainCase{0.40, 0.0, 3}));
 
 }  // namespace
 }  // namespace hopscotch::planner::testing_support

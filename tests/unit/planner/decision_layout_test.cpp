@@ -28,6 +28,17 @@ TEST(DecisionLayout, GivesEachVariableOnePlace) {
   for (const int count : uses) EXPECT_EQ(count, 1);
 }
 
+TEST(DecisionLayout, OfALandingAloneHasItsKnotsFromTheFirstOn) {
+  const DecisionLayout landed({0, 0, 3});
+  EXPECT_EQ(landed.landing(0), 0);
+  EXPECT_EQ(landed.landing(3), 18);
+  EXPECT_EQ(landed.landing_step(), 24);
+  EXPECT_EQ(landed.size(), 25);
+  const std::array<int, 13> at = landed.landing_step_variables(0);
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(at[static_cast<std::size_t>(i)], i);
+  EXPECT_EQ(at[12], landed.landing_step());
+}
+
 TEST(DecisionLayout, FlightStartsWithTheLastTakeoffKnotAndAFlatFoot) {
   const std::array<int, 17> at = kLayout.flight_step_variables(0);
   EXPECT_EQ(at[kShankPitch], kLayout.takeoff(4));

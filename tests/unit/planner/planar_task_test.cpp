@@ -35,6 +35,18 @@ TEST(PlanarTask, AveragesTheLegs) {
   EXPECT_NEAR(task->start.pitch[model::kShank], task->final_posture[model::kShank], kRounding);
 }
 
+TEST(PlanarTask, OfAJumpThatIsDownStartsAtItsTarget) {
+  const PlanarModel model = shipped_model();
+  PlanRequest landed = request(0.4, 0.1);
+  EXPECT_FALSE(planar_task(model, landed, FeetPlace::target)) << "its feet are at the origin";
+  landed.start.p_WB += Eigen::Vector3d(0.41, 0.0, 0.1);
+  EXPECT_FALSE(planar_task(model, landed));
+  const core::Result<PlanarTask> task = planar_task(model, landed, FeetPlace::target);
+  ASSERT_TRUE(task);
+  EXPECT_NEAR(task->start.pitch[model::kShank], task->final_posture[model::kShank], kRounding);
+  EXPECT_EQ(task->distance, 0.4);
+}
+
 TEST(PlanarTask, DoesNotDependOnTheHeading) {
   const PlanarModel model = shipped_model();
   const PlanRequest straight = request(0.4, 0.0);

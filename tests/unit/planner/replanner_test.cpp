@@ -16,11 +16,18 @@ using testing_support::hector;
 using testing_support::request;
 using testing_support::shipped_config;
 
+/// Landings are planned with no more room at toe and heel than their rests are.
+PlannerConfig config() {
+  PlannerConfig config = shipped_config();
+  config.landing_cop_margin = config.takeoff_cop_margin;
+  return config;
+}
+
 /// A leap of 0.40 m as it was planned from standing.
 class RestOfAJump : public testing::Test {
  protected:
   RestOfAJump() {
-    JumpPlanner planner(shipped_config(), hector());
+    JumpPlanner planner(config(), hector());
     plan_ = *planner.plan(request(0.40, 0.0));
     whole_ = std::make_shared<const KnownJump>(*planner.last());
   }
@@ -45,6 +52,11 @@ class RestOfAJump : public testing::Test {
     return request;
   }
 
+  /// Steps done at landing knot `k`.
+  [[nodiscard]] static int landed(int k) {
+    return config().steps.takeoff + config().steps.flight + k;
+  }
+
   core::JumpPlan plan_;
   std::shared_ptr<const KnownJump> whole_;
 };
@@ -57,8 +69,9 @@ TEST_F(RestOfAJump, OfTheBestJumpIsTheBestRest) {
     double off_max;  // [rad]
   };
   for (const auto [done, off_max] :
-       {Case{0, 0.002}, Case{5, 0.005}, Case{10, 0.01}, Case{20, 0.04}}) {
-    Replanner replanner(shipped_config(), hector());
+       {Case{0, 0.002}, Case{5, 0.005}, Case{10, 0.01}, Case{20, 0.04}, Case{landed(0), 0.002},
+        Case{landed(4), 0.002}, Case{landed(10), 0.002}}) {
+    Replanner replanner(config(), hector());
     const core::Result<core::JumpPlan> found = replanner.replan(rest(done));
     ASSERT_TRUE(found) << done << ": " << found.error().text();
     EXPECT_LE(replanner.iterations(), 12) << done;
@@ -73,8 +86,8 @@ TEST_F(RestOfAJump, OfTheBestJumpIsTheBestRest) {
 }
 
 TEST_F(RestOfAJump, StartsWhereTheRobotIsAndEndsAtTheTarget) {
-  for (const int done : {3, 10, 15, 20}) {
-    Replanner replanner(shipped_config(), hector());
+  for (const int done : {3, 10, 15, 20, landed(1), landed(6)}) {
+    Replanner replanner(config(), hector());
     const RestRequest request = pushed(done, 0.4);
     const core::Result<core::JumpPlan> found = replanner.replan(request);
     ASSERT_TRUE(found) << done << ": " << found.error().text();
@@ -91,7 +104,7 @@ TEST_F(RestOfAJump, StartsWhereTheRobotIsAndEndsAtTheTarget) {
 }
 
 TEST_F(RestOfAJump, IsPlannedFromTheLastRest) {
-  Replanner replanner(shipped_config(), hector());
+  Replanner replanner(config(), hector());
   ASSERT_TRUE(replanner.replan(pushed(8, 0.4)));
   const core::Result<core::JumpPlan> once = replanner.replan(pushed(8, 0.4));
   ASSERT_TRUE(once);
@@ -104,9 +117,36 @@ TEST_F(RestOfAJump, IsPlannedFromTheLastRest) {
   EXPECT_NEAR((again->knots[10].q - once->knots[13].q).norm(), 0.0, 0.02);
 }
 
+/// What was left of the takeoff last is what the landing is taken from.
+TEST_F(RestOfAJump, OfALandingFollowsThatOfItsTakeoff) {
+  Replanner replanner(config(), hector());
+  const core::Result<core::JumpPlan> takeoff = replanner.replan(pushed(8, 0.4));
+  ASSERT_TRUE(takeoff);
+  RestRequest later = pushed(8, 0.0);
+  later.steps_done = landed(4);
+  later.state = model::state_of(takeoff->knots[static_cast<std::size_t>(landed(4) - 8)]);
+  const core::Result<core::JumpPlan> landing = replanner.replan(later);
+  ASSERT_TRUE(landing) << landing.error().text();
+  EXPECT_LE(replanner.iterations(), 12);
+  EXPECT_EQ(landing->knots[0].phase, core::JumpPhase::landing);
+  EXPECT_EQ(landing->touchdown_time, 0.0);
+  const std::size_t same = static_cast<std::size_t>(landed(8) - 8);
+  EXPECT_NEAR((landing->knots[4].q - takeoff->knots[same].q).norm(), 0.0, 0.01);
+}
+
+TEST_F(RestOfAJump, KnowsWhichLandingStepsHaveBegun) {
+  const core::JumpKnot* const touchdown = &plan_.knots[static_cast<std::size_t>(landed(0))];
+  for (int k = 0; k < config().steps.landing; ++k) {
+    const double begin = touchdown[k].time - touchdown->time;
+    EXPECT_EQ(landing_steps_begun(config(), *whole_, begin + 1e-6), k + 1);
+    EXPECT_EQ(landing_steps_begun(config(), *whole_, begin - 1e-6), k);
+  }
+  EXPECT_EQ(landing_steps_begun(config(), *whole_, 10.0), config().steps.landing);
+}
+
 TEST_F(RestOfAJump, RepeatsToTheBit) {
-  Replanner one(shipped_config(), hector());
-  Replanner other(shipped_config(), hector());
+  Replanner one(config(), hector());
+  Replanner other(config(), hector());
   const core::Result<core::JumpPlan> a = one.replan(pushed(12, 0.3));
   const core::Result<core::JumpPlan> b = other.replan(pushed(12, 0.3));
   ASSERT_TRUE(a);
@@ -118,10 +158,11 @@ TEST_F(RestOfAJump, RepeatsToTheBit) {
 }
 
 TEST_F(RestOfAJump, ThatCannotBePlannedLeavesThePlanInHand) {
-  Replanner replanner(shipped_config(), hector());
-  const int steps = shipped_config().steps.takeoff;
-  RestRequest late = rest(steps - 1);
-  EXPECT_EQ(replanner.replan(late).error().reason, core::Reason::target_malformed);
+  Replanner replanner(config(), hector());
+  const int steps = config().steps.takeoff;
+  for (const int done : {steps - 1, steps + 2, static_cast<int>(plan_.knot_count) - 2}) {
+    EXPECT_EQ(replanner.replan(rest(done)).error().reason, core::Reason::target_malformed);
+  }
   RestRequest early = rest(0);
   early.steps_done = -1;
   EXPECT_EQ(replanner.replan(early).error().reason, core::Reason::target_malformed);
