@@ -5,13 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "apps/installation.hpp"
-#include "apps/program_config.hpp"
 #include "model/gravity.hpp"
-#include "model/robot_parameters.hpp"
-#include "model/stand_posture.hpp"
-#include "planner/jump_planner.hpp"
-#include "planner/step_target.hpp"
+#include "tests/unit/apps/planned_trial.hpp"
 
 namespace hopscotch::apps {
 namespace {
@@ -20,22 +15,13 @@ using Json = nlohmann::json;
 
 /// What `plan --fly --json --out` would write of a jump with the shipped tuning, knots included.
 Json trajectory_of(double distance, double height) {
-  const planner::StepRequest step{
-      .distance = distance, .height = height, .edge = planner::default_edge(distance, height)};
-  const ProgramConfig config = ProgramConfig::load(config_directory() / "hopscotch.yaml");
-  const model::RobotParameters robot = model::RobotParameters::load(robot_file("hector"));
-  planner::JumpPlanner planner(config.planner, robot);
-  const auto plan = planner.plan(
-      {.start = planner::standing_state(*model::stand_pose(robot, config.stand_posture)),
-       .target = planner::step_target(step, robot),
-       .final_posture = config.stand_posture});
-  EXPECT_TRUE(plan) << plan.error().text();
+  const FlightTrial trial = testing::planned_trial({.distance = distance, .height = height});
   PlanContext context;
-  context.flown = fly({*plan, step, config, robot});
-  return Json::parse(plan_trajectory_json(*plan, context));
+  context.flown = fly(trial);
+  return Json::parse(plan_trajectory_json(trial.plan, context));
 }
 
-class PlannedFlight : public testing::TestWithParam<std::pair<double, double>> {
+class PlannedFlight : public ::testing::TestWithParam<std::pair<double, double>> {
  protected:
   PlannedFlight() : json_(trajectory_of(GetParam().first, GetParam().second)) {}
 
@@ -73,8 +59,8 @@ TEST_P(PlannedFlight, IsFlownAsLongAsItSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Jumps, PlannedFlight,
-                         testing::Values(std::pair{0.35, 0.0}, std::pair{0.40, 0.20},
-                                         std::pair{0.42, -0.15}));
+                         ::testing::Values(std::pair{0.35, 0.0}, std::pair{0.40, 0.20},
+                                           std::pair{0.42, -0.15}));
 
 }  // namespace
 }  // namespace hopscotch::apps

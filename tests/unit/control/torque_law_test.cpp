@@ -5,13 +5,12 @@
 #include <random>
 
 #include "model/kinematics.hpp"
+#include "tests/unit/control/mpc_samples.hpp"
 
 namespace hopscotch::control {
 namespace {
 
-model::RobotParameters hector() {
-  return model::RobotParameters::load(HOPSCOTCH_SOURCE_DIR "/config/robots/hector.yaml");
-}
+using testing::hector;
 
 core::RobotState random_state(std::mt19937& random) {
   std::uniform_real_distribution<double> angle(-0.4, 0.4);

@@ -11,26 +11,10 @@
 #include "core/allocation_count.hpp"
 #include "model/kinematics.hpp"
 #include "model/motor.hpp"
+#include "tests/unit/control/mpc_samples.hpp"
 
 namespace hopscotch::control {
 namespace {
-
-model::RobotParameters hector() {
-  return model::RobotParameters::load(HOPSCOTCH_SOURCE_DIR "/config/robots/hector.yaml");
-}
-
-WrenchMpcConfig cone_config() {
-  WrenchMpcConfig config;
-  config.horizon = 1;
-  config.state_weight.setOnes();
-  config.wrench_weight.setConstant(1e-5);
-  config.friction = 0.5;
-  config.cop_toe = 0.06;
-  config.cop_heel = 0.03;
-  config.yaw_moment_arm = 0.03;
-  config.max_normal_force = 500.0;
-  return config;
-}
 
 class WrenchLimiterTest : public ::testing::Test {
  protected:
@@ -117,9 +101,10 @@ class WrenchLimiterTest : public ::testing::Test {
   }
 
   std::mt19937 random_{11};
-  model::RobotParameters robot_ = hector();
-  WrenchCone cone_ = constant_part(cone_config(), robot_).cone;
-  WrenchLimiter limiter_{cone_config(), robot_};
+  model::RobotParameters robot_ = testing::hector();
+  WrenchMpcConfig config_ = WrenchMpcConfig::load(testing::mpc_section());
+  WrenchCone cone_ = constant_part(config_, robot_).cone;
+  WrenchLimiter limiter_{config_, robot_};
 };
 
 TEST_F(WrenchLimiterTest, WhatTheMotorsCanHoldIsLeftToTheBit) {
