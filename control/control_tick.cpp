@@ -69,11 +69,7 @@ double wrapped(double angle) {
 
 ControlTick::ControlTick(const ControlConfig& config, const model::RobotParameters& robot,
                          const StandTarget& stand)
-    : config_(config),
-      robot_(robot),
-      limiter_(config.wrench_mpc, robot),
-      supervisor_(config.supervisor, robot),
-      stand_(stand) {}
+    : config_(config), robot_(robot), supervisor_(config.supervisor, robot), stand_(stand) {}
 
 double ControlTick::command_time(core::Stamp now) const noexcept {
   return now.since(start_);
@@ -400,7 +396,7 @@ void ControlTick::bear_wrenches(const core::RobotState& state, const core::Joint
                                 core::JointCommand& command) noexcept {
   const core::JointVector pd =
       command.kp.cwiseProduct(command.q - state.q) + command.kd.cwiseProduct(command.dq - state.dq);
-  command.tau = base + limiter_.limit(state, base + pd, status_.wrenches);
+  command.tau = base + held_torques(robot_, state, base + pd, status_.wrenches);
 }
 
 void ControlTick::answer(const MpcAnswer& answer) noexcept {

@@ -12,7 +12,6 @@
 #include "control/plan_follower.hpp"
 #include "control/recovery_hop.hpp"
 #include "control/stand_plan.hpp"
-#include "control/wrench_limiter.hpp"
 #include "control/wrench_mpc.hpp"
 #include "core/control_reference.hpp"
 #include "core/control_status.hpp"
@@ -149,7 +148,6 @@ class ControlTick {
 
   ControlConfig config_;
   model::RobotParameters robot_;
-  WrenchLimiter limiter_;
   JumpSupervisor supervisor_;
   StandTarget stand_;
   core::JumpPlan plan_;
