@@ -8,6 +8,7 @@
 
 #include "planner/constraint_block.hpp"
 #include "planner/differentiation.hpp"
+#include "planner/step_shift.hpp"
 
 namespace hopscotch::planner {
 
@@ -109,6 +110,7 @@ enum class StepLength { fixed, free };
 ///   y_mid = (y0 + y1) / 2 - h (v1 - v0) / 8,  v_mid = (v0 + v1) / 2,  u  and  h
 /// as its 3 Dof + 1 arguments, and the first Dof rows of the block are the trapezoid
 ///   y1 - y0 - h (v0 + v1) / 2 = 0, which is exact for constant acceleration.
+/// A `StepShift` adds its constants to u and to the right side.
 /// Local variables: y0, v0, y1, v1 and, when free, s with h = share s.
 template <typename Law, int Dof, StepLength kLength>
 class StepBlock final : public ConstraintBlock {
@@ -121,15 +123,15 @@ class StepBlock final : public ConstraintBlock {
 
   /// @param step Length h of a fixed step [s], or the share of a free one [-].
   StepBlock(Law law, const std::array<int, static_cast<std::size_t>(kVariables)>& variables,
-            double step)
-      : law_(std::move(law)), variables_(variables), step_(step) {}
+            double step, const StepShift<Dof>& shift = {})
+      : law_(std::move(law)), variables_(variables), step_(step), shift_(shift) {}
 
   [[nodiscard]] int rows() const override { return kRowTotal; }
   [[nodiscard]] std::span<const int> variables() const override { return variables_; }
 
   void bounds(std::span<double> lower, std::span<double> upper) const override {
-    std::fill_n(lower.begin(), Dof, 0.0);
-    std::fill_n(upper.begin(), Dof, 0.0);
+    std::copy(shift_.turn.begin(), shift_.turn.end(), lower.begin());
+    std::copy(shift_.turn.begin(), shift_.turn.end(), upper.begin());
     law_.bounds(lower.subspan(Dof), upper.subspan(Dof));
   }
 
@@ -203,16 +205,17 @@ class StepBlock final : public ConstraintBlock {
     return step_;
   }
 
-  static double middle_value(std::span<const double> x, double h, int i) {
+  [[nodiscard]] double middle_value(std::span<const double> x, double h, int i) const {
     if (i == 3 * Dof) return h;
     const int d = i % Dof;
     if (i < Dof) return 0.5 * (y0(x, d) + y1(x, d)) - 0.125 * h * (v1(x, d) - v0(x, d));
     if (i < 2 * Dof) return 0.5 * (v0(x, d) + v1(x, d));
-    return (v1(x, d) - v0(x, d)) / h;
+    return (v1(x, d) - v0(x, d)) / h + shift_.acceleration[at(d)];
   }
 
   template <typename T>
-  static std::array<T, kArgumentSize> seeded_middle(std::span<const double> x, double h) {
+  [[nodiscard]] std::array<T, kArgumentSize> seeded_middle(std::span<const double> x,
+                                                           double h) const {
     std::array<T, kArgumentSize> middle;
     for (int i = 0; i < kArguments; ++i) {
       const double value = middle_value(x, h, i);
@@ -281,6 +284,7 @@ class StepBlock final : public ConstraintBlock {
   Law law_;
   std::array<int, static_cast<std::size_t>(kVariables)> variables_;
   double step_;
+  StepShift<Dof> shift_;
 };
 
 }  // namespace hopscotch::planner

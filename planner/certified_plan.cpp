@@ -17,19 +17,19 @@ using core::Refusal;
 /// A margin below zero by less is rounding of the solver.
 constexpr double kMarginTolerance = 1e-3;
 
-Refusal not_certified(const core::Certificate& certificate, double violation_max) {
+Refusal not_certified(const core::Certificate& certificate) {
   const core::CertificateEntry& worst = certificate.binding();
   char text[160];
   std::snprintf(text, sizeof text,
                 "%s has margin %.3f at %.3f s; largest dense violation %.3f (allowed %.3f)",
                 std::string(worst.name).c_str(), worst.margin, worst.time,
-                certificate.dense_max_violation, violation_max);
+                certificate.dense_max_violation, kDenseViolationMax);
   return {Reason::certificate_refused, text};
 }
 
-bool is_certified(const core::Certificate& certificate, double violation_max) {
+bool is_certified(const core::Certificate& certificate) {
   return certificate.binding().margin >= -kMarginTolerance &&
-         certificate.dense_max_violation <= violation_max;
+         certificate.dense_max_violation <= kDenseViolationMax;
 }
 
 }  // namespace
@@ -47,15 +47,14 @@ Refusal infeasible(const SolveOutcome& outcome, const PlanarTask& task, std::str
 }
 
 std::optional<Refusal> certify_and_lift(const PlanarModel& model, const PlanarTask& task,
-                                        const SolvedMotion& solved, double violation_max,
-                                        core::JumpPlan& plan) {
+                                        const SolvedMotion& solved, core::JumpPlan& plan) {
   const PlanarMotion& motion = solved.motion;
   const CertifiedMotion certified = certify(model, task, motion);
   plan.certificate = certified.certificate;
   plan.certificate.max_violation = solved.outcome.violation;
   plan.peaks = certified.peaks;
-  if (!is_certified(plan.certificate, violation_max)) {
-    return not_certified(plan.certificate, violation_max);
+  if (!is_certified(plan.certificate)) {
+    return not_certified(plan.certificate);
   }
   if (!lift_to_3d(model, motion, plan.target, plan)) {
     return Refusal{Reason::out_of_reach, "a leg cannot reach so far to the side"};
@@ -63,8 +62,8 @@ std::optional<Refusal> certify_and_lift(const PlanarModel& model, const PlanarTa
   if (!side_target(plan.target).is_straight()) {
     certify_legs(model.robot, model.config.friction, plan);
   }
-  if (!is_certified(plan.certificate, violation_max)) {
-    return not_certified(plan.certificate, violation_max);
+  if (!is_certified(plan.certificate)) {
+    return not_certified(plan.certificate);
   }
   return std::nullopt;
 }

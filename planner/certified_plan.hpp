@@ -19,12 +19,10 @@ inline constexpr double kDenseViolationMax = 1e-3;
                                        std::string_view limit);
 
 /// Fills certificate, peaks and knots of a plan whose target is set.
-/// @param violation_max Allowed as `dense_max_violation`.
 /// @return why it is refused.
 [[nodiscard]] std::optional<core::Refusal> certify_and_lift(const PlanarModel& model,
                                                             const PlanarTask& task,
                                                             const SolvedMotion& solved,
-                                                            double violation_max,
                                                             core::JumpPlan& plan);
 
 }  // namespace hopscotch::planner

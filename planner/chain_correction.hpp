@@ -27,6 +27,10 @@ struct ChainCorrection {
   void clear_bounds();
 };
 
+/// Dynamics between the knots and limits beyond it are good: an aim that leaves room below the
+/// tolerance of the certificate.
+inline constexpr double kDefectWanted = 7e-4;
+
 /// The largest of what a motion misses.
 struct MotionDefect {
   double dynamics = 0.0;  ///< Pitch [rad] or rate [of the largest motor speed] at a step's end.

@@ -5,6 +5,7 @@
 
 #include "planner/chain_step.hpp"
 #include "planner/constraint_block.hpp"
+#include "planner/step_shift.hpp"
 
 namespace hopscotch::planner {
 
@@ -14,9 +15,7 @@ struct StepPlace {
   std::array<int, 4 * static_cast<std::size_t>(Dof)> at{};  ///< y0, v0, y1, v1.
   int length_at = kNoVariable;                              ///< Variable s of a free step.
   double length = 0.0;                                      ///< h, or the share of s.
-  /// Constants of a deferred correction, see StepCorrection; of the coordinates.
-  std::array<double, static_cast<std::size_t>(Dof)> turn{};
-  std::array<double, static_cast<std::size_t>(Dof)> acceleration{};
+  StepShift<Dof> shift;
 };
 template <int Dof>
 struct StepPoint {
@@ -51,7 +50,8 @@ template <int Dof>
     p.rate[d] = v0;
     p.middle_rate[d] = 0.5 * (v0 + v1);
     p.acceleration[d] = (v1 - v0) / p.h;
-    p.gap[d] = x(place.at[2 * kDof + d]) - x(place.at[d]) - p.h * p.middle_rate[d] - place.turn[d];
+    p.gap[d] =
+        x(place.at[2 * kDof + d]) - x(place.at[d]) - p.h * p.middle_rate[d] - place.shift.turn[d];
   }
   return p;
 }
@@ -66,7 +66,7 @@ typename StepTerms<Dof>::Slope middle_of(const StepPlace<Dof>& place, const Step
     middle[d] =
         0.5 * (x(place.at[d]) + x(place.at[2 * kDof + d])) - 0.125 * p.h * p.h * p.acceleration[d];
     middle[kDof + d] = p.middle_rate[d];
-    middle[2 * kDof + d] = p.acceleration[d] + place.acceleration[d];
+    middle[2 * kDof + d] = p.acceleration[d] + place.shift.acceleration[d];
   }
   middle[3 * kDof] = p.h;
   return middle;

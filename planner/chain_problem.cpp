@@ -193,24 +193,14 @@ void ChainProblem::write_bounds() {
   }
 }
 
-namespace {
-
-template <int Dof>
-void set_correction(const StepCorrection& correction, StepPlace<Dof>& place) {
-  const auto turn = coordinates_from_links(correction.turn);
-  const auto acceleration = coordinates_from_links(correction.acceleration);
-  std::copy_n(turn.begin(), place.turn.size(), place.turn.begin());
-  std::copy_n(acceleration.begin(), place.acceleration.size(), place.acceleration.begin());
-}
-
-}  // namespace
-
 /// Bounds never cross: a row keeps at least a tenth of its range.
 void ChainProblem::correct(const ChainCorrection& correction) {
   auto step = correction.steps.begin();
-  for (StepPlace<kStanceDof>& place : takeoff_places_) set_correction(*step++, place);
-  for (StepPlace<kFlightDof>& place : flight_places_) set_correction(*step++, place);
-  for (StepPlace<kStanceDof>& place : landing_places_) set_correction(*step++, place);
+  for (StepPlace<kStanceDof>& place : takeoff_places_)
+    place.shift = step_shift<kStanceDof>(*step++);
+  for (StepPlace<kFlightDof>& place : flight_places_) place.shift = step_shift<kFlightDof>(*step++);
+  for (StepPlace<kStanceDof>& place : landing_places_)
+    place.shift = step_shift<kStanceDof>(*step++);
   write_bounds();
   for (int i = 0; i < layout_.row_slots(); ++i) {
     const double room = 0.45 * (upper_(i) - lower_(i));

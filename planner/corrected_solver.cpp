@@ -21,9 +21,6 @@ constexpr double kPolishViolationMax = 1e-3;
 /// A pass that leaves more has no solution nearby, unless it left clearly more before.
 constexpr double kPolishHopeless = 1e-2;
 constexpr double kPolishProgress = 0.9;
-/// Dynamics between the knots and limits beyond it are good: an aim that leaves room below the
-/// tolerance of the certificate.
-constexpr double kDefectWanted = 7e-4;
 /// A pass that leaves more of the defect may have overshot: what was active is not any more, and
 /// comes back with the next one. From the second such pass on corrections go half of their way.
 constexpr double kOvershoot = 0.8;

@@ -62,7 +62,7 @@ std::array<int, 9> clearance_variables(const DecisionLayout& layout, int knot) {
 }
 
 void add_flight(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
-                BlockList& blocks) {
+                BlockList& blocks, StepCorrections corrections) {
   const int steps = layout.steps().flight;
   const FlightLaw law = flight_law(model, task);
   const JointRows<kFlightDof> joints = joint_rows<kFlightDof>(model.robot, model.config);
@@ -72,7 +72,8 @@ void add_flight(const PlanarModel& model, const PlanarTask& task, const Decision
   blocks.push_back(
       std::make_unique<KnotBlock<LiftoffLaw, 11>>(liftoff_law(model), liftoff_variables(layout)));
   for (int k = 0; k < steps; ++k) {
-    blocks.push_back(std::make_unique<Step>(law, layout.flight_step_variables(k), 1.0));
+    const StepShift shift = step_shift<kFlightDof>(corrections, layout.steps().takeoff + k);
+    blocks.push_back(std::make_unique<Step>(law, layout.flight_step_variables(k), 1.0, shift));
     blocks.push_back(std::make_unique<Knot>(joints, following<8>(layout.flight(k + 1))));
     add_momentum(model, layout, k + 1, blocks);
     if (k + 1 == steps) break;  // touchdown belongs to the landing

@@ -164,7 +164,7 @@ struct ClearanceLaw {
 
 /// Eq. (11): steps and knots of the flight, with lift-off; touchdown belongs to the landing.
 void add_flight(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
-                BlockList& blocks);
+                BlockList& blocks, StepCorrections corrections = {});
 
 /// Clearance asked of toe and heel at share `s` of the flight: none at its ends, all in the middle
 /// [m].

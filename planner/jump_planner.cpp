@@ -11,10 +11,8 @@
 
 #include "planner/certificate.hpp"
 #include "planner/certified_plan.hpp"
-#include "planner/corrected_solver.hpp"
-#include "planner/ipopt_problem.hpp"
+#include "planner/corrected_ipopt.hpp"
 #include "planner/jump_library.hpp"
-#include "planner/jump_program.hpp"
 #include "planner/landing_phase.hpp"
 #include "planner/lift_to_3d.hpp"
 #include "planner/planar_task.hpp"
@@ -70,12 +68,6 @@ std::optional<Refusal> blocked_stand(const PlanarModel& model, const PlanarTask&
                 "ground behind leaves room for %.2f rad; stopped by %s",
                 task.distance, task.height, -leant, -lower, kShankLimit);
   return Refusal{Reason::plan_infeasible, text};
-}
-
-double violation_max(Solver solver) {
-  // Nothing corrects a solution of Ipopt between its knots.
-  constexpr double kUncorrectedViolationMax = 0.10;
-  return solver == Solver::chain ? kDenseViolationMax : kUncorrectedViolationMax;
 }
 
 core::JumpPlan plan_for(const PlanRequest& request, const SolveOutcome& outcome) {
@@ -168,15 +160,12 @@ struct JumpPlanner::Memory {
 core::Result<core::JumpPlan> JumpPlanner::Memory::plan_by_ipopt(const Trial& trial) {
   const auto& [model, task, request] = trial;
   const bool warm = request.guess == StartGuess::previous && last_by_ipopt.size() > 0;
-  const StartPoint start{warm ? last_by_ipopt : kinematic_guess(model, task, layout)};
-  const SolveOutcome solved = solve_with_ipopt(
-      jump_program(model, task, layout), decision_bounds(model, task, layout),
-      decision_sizes(layout), start, {model.config.iterations_max, model.config.tolerance});
-  core::Result<core::JumpPlan> plan =
-      finish(trial, {solved, motion_from_decision(model, task, layout, solved.x)});
+  const SolvedMotion solved = solve_corrected_with_ipopt(
+      model, task, layout, warm ? last_by_ipopt : kinematic_guess(model, task, layout));
+  core::Result<core::JumpPlan> plan = finish(trial, solved);
   if (!plan) return plan;
   plan.value().warm = warm;
-  last_by_ipopt = solved.x;
+  last_by_ipopt = solved.outcome.x;
   return plan;
 }
 
@@ -190,8 +179,7 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::finish(const Trial& trial,
   obstacle = by_chain ? chain.obstacle() : std::string_view{};
   if (!is_acceptable(outcome)) return infeasible(outcome, task, obstacle);
   core::JumpPlan plan = plan_for(request, outcome);
-  if (std::optional<Refusal> refusal =
-          certify_and_lift(model, task, solved, violation_max(request.solver), plan)) {
+  if (std::optional<Refusal> refusal = certify_and_lift(model, task, solved, plan)) {
     obstacle = plan.certificate.binding().name;
     return *refusal;
   }
@@ -272,7 +260,7 @@ core::Result<core::JumpPlan> JumpPlanner::Memory::by_library(const Trial& trial)
     motion.outcome.status = SolveStatus::solved;
     motion.motion = motion_of(*jump, trial.model, *task, layout);
     core::JumpPlan plan = plan_for(request, motion.outcome);
-    if (certify_and_lift(trial.model, *task, motion, kDenseViolationMax, plan)) continue;
+    if (certify_and_lift(trial.model, *task, motion, plan)) continue;
     plan.iterations = iterations;
     plan.warm = true;
     return plan;

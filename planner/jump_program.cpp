@@ -9,13 +9,13 @@
 namespace hopscotch::planner {
 
 NonlinearProgram jump_program(const PlanarModel& model, const PlanarTask& task,
-                              const DecisionLayout& layout) {
+                              const DecisionLayout& layout, StepCorrections corrections) {
   BlockList blocks;
   if (!layout.steps().landed()) {
-    add_takeoff(model, task, layout, blocks);
-    add_flight(model, task, layout, blocks);
+    add_takeoff(model, task, layout, blocks, corrections);
+    add_flight(model, task, layout, blocks, corrections);
   }
-  add_landing(model, task, layout, blocks);
+  add_landing(model, task, layout, blocks, corrections);
   return {layout.size(), std::move(blocks)};
 }
 

@@ -43,7 +43,7 @@ std::array<int, 15> touchdown_variables(const DecisionLayout& layout) {
 }
 
 void add_landing(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
-                 BlockList& blocks) {
+                 BlockList& blocks, StepCorrections corrections) {
   const JointRows<kStanceDof> joints = joint_rows<kStanceDof>(model.robot, model.config);
   using Step = StepBlock<StanceLaw, kStanceDof, StepLength::free>;
   using Knot = KnotBlock<JointRows<kStanceDof>, 2 * kStanceDof>;
@@ -54,8 +54,10 @@ void add_landing(const PlanarModel& model, const PlanarTask& task, const Decisio
   }
   for (int k = 0; k < layout.steps().landing; ++k) {
     const std::array<int, 13> ends = layout.landing_step_variables(k);
-    blocks.push_back(
-        std::make_unique<Step>(landing_law(model, task, k), ends, model.config.landing_share(k)));
+    const int step = layout.steps().takeoff + layout.steps().flight + k;
+    blocks.push_back(std::make_unique<Step>(landing_law(model, task, k), ends,
+                                            model.config.landing_share(k),
+                                            step_shift<kStanceDof>(corrections, step)));
     if (landed && k == 0) continue;  // the start is as it is
     std::array<int, 6> before{};
     std::copy(ends.begin(), ends.begin() + 6, before.begin());

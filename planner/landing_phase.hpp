@@ -67,6 +67,6 @@ struct TouchdownLaw {
 /// Eq. (12): touchdown and the way to rest, by the same exact chain as the takeoff in place of the
 /// single rigid body of eqs. (5)-(6).
 void add_landing(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
-                 BlockList& blocks);
+                 BlockList& blocks, StepCorrections corrections = {});
 
 }  // namespace hopscotch::planner

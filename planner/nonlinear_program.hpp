@@ -25,6 +25,11 @@ class NonlinearProgram {
   [[nodiscard]] int rows() const { return static_cast<int>(lower_.size()); }
   [[nodiscard]] const Eigen::VectorXd& row_lower() const { return lower_; }
   [[nodiscard]] const Eigen::VectorXd& row_upper() const { return upper_; }
+  /// Replaces the bounds of a row.
+  void bound_row(int row, double lower, double upper) {
+    lower_(row) = lower;
+    upper_(row) = upper;
+  }
   [[nodiscard]] const std::vector<SparseEntry>& jacobian_pattern() const { return jacobian_; }
   /// Lower triangle.
   [[nodiscard]] const std::vector<SparseEntry>& hessian_pattern() const { return hessian_; }

@@ -224,7 +224,7 @@ core::Result<core::JumpPlan> Replanner::replan(const RestRequest& request) {
   plan.status = core::PlanStatus::solved;
   plan.iterations = iterations_;
   plan.warm = true;
-  if (auto refusal = certify_and_lift(model, *task, solved, kDenseViolationMax, plan)) {
+  if (auto refusal = certify_and_lift(model, *task, solved, plan)) {
     return *std::move(refusal);
   }
   last_ = std::make_shared<const KnownJump>(solver.known(*task, solved));

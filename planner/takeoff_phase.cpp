@@ -94,14 +94,15 @@ void add_smoothness(const PlanarModel& model, const DecisionLayout& layout, Bloc
 }
 
 void add_takeoff(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
-                 BlockList& blocks) {
+                 BlockList& blocks, StepCorrections corrections) {
   const JointRows<kStanceDof> joints = joint_rows<kStanceDof>(model.robot, model.config);
   using Step = StepBlock<StanceLaw, kStanceDof, StepLength::fixed>;
   using Knot = KnotBlock<JointRows<kStanceDof>, 2 * kStanceDof>;
   for (int k = 0; k < layout.steps().takeoff; ++k) {
     const std::array<int, 12> ends = layout.takeoff_step_variables(k);
-    blocks.push_back(
-        std::make_unique<Step>(takeoff_law(model, task, k), ends, model.config.takeoff_step(k)));
+    blocks.push_back(std::make_unique<Step>(takeoff_law(model, task, k), ends,
+                                            model.config.takeoff_step(k),
+                                            step_shift<kStanceDof>(corrections, k)));
     std::array<int, 6> after{};
     std::copy(ends.begin() + 6, ends.end(), after.begin());
     blocks.push_back(std::make_unique<Knot>(joints, after));

@@ -7,6 +7,7 @@
 #include "planner/objective.hpp"
 #include "planner/planar_jump.hpp"
 #include "planner/shared_limits.hpp"
+#include "planner/step_shift.hpp"
 
 namespace hopscotch::planner {
 
@@ -71,6 +72,6 @@ void add_smoothness(const PlanarModel& model, const DecisionLayout& layout, Bloc
 
 /// Eq. (10): steps of the takeoff, and the joint limits of its knots.
 void add_takeoff(const PlanarModel& model, const PlanarTask& task, const DecisionLayout& layout,
-                 BlockList& blocks);
+                 BlockList& blocks, StepCorrections corrections = {});
 
 }  // namespace hopscotch::planner

@@ -5,81 +5,18 @@
 #include <cmath>
 #include <vector>
 
-#include "planner/chain_problem.hpp"
-#include "planner/jump_program.hpp"
+#include "planner/row_places.hpp"
 #include "planner/warm_start.hpp"
 #include "tests/unit/planner/planner_fixture.hpp"
 
 namespace hopscotch::planner::testing_support {
-
-/// Where a row of the program lives in the arrays of the chain.
-struct RowPlace {
-  bool is_equality = false;
-  int at = 0;
-};
-
-/// The rows of the blocks in their order; those without bounds are not part of the program.
-class RowPlaces {
- public:
-  explicit RowPlaces(const ChainProblem& problem) : problem_(problem) {
-    const ChainLayout& layout = problem.layout();
-    const StepCounts& steps = layout.steps();
-    for (int k = 0; k < steps.takeoff; ++k) {
-      equalities(layout.takeoff_gap(k), 3);
-      slots(layout.takeoff_rows(k), ChainLayout::kStanceRows);
-      slots(layout.takeoff_joints(k), 3);
-    }
-    if (!steps.landed()) equalities(layout.liftoff(), 5);
-    for (int k = 0; k < steps.flight; ++k) {
-      equalities(layout.flight_gap(k), 4);
-      slots(layout.flight_rows(k), ChainLayout::kFlightRows);
-      slots(layout.flight_joints(k), 4);
-      equalities(layout.momentum(k), 1);
-      if (k + 1 < steps.flight) slots(layout.clearance(k), ClearanceLaw::kRows);
-    }
-    if (!steps.landed()) {
-      equalities(layout.touchdown(), 5);
-      slots(layout.touchdown_speeds(), 2);
-    }
-    for (int k = 0; k < steps.landing; ++k) {
-      equalities(layout.landing_gap(k), 3);
-      slots(layout.landing_rows(k), ChainLayout::kStanceRows);
-      slots(layout.landing_joints(k), 3);
-    }
-  }
-  [[nodiscard]] const std::vector<RowPlace>& list() const { return list_; }
-
-  /// Multipliers or weights of the program's rows from those of the chain.
-  [[nodiscard]] Eigen::VectorXd gather(const Eigen::VectorXd& slots,
-                                       const Eigen::VectorXd& equalities) const {
-    Eigen::VectorXd out(static_cast<Eigen::Index>(list_.size()));
-    for (std::size_t r = 0; r < list_.size(); ++r) {
-      out(static_cast<Eigen::Index>(r)) =
-          list_[r].is_equality ? equalities(list_[r].at) : slots(list_[r].at);
-    }
-    return out;
-  }
-
- private:
-  void equalities(int first, int count) {
-    for (int i = 0; i < count; ++i) list_.push_back({true, first + i});
-  }
-  void slots(int first, int count) {
-    for (int i = first; i < first + count; ++i) {
-      if (problem_.lower()(i) > -kUnbounded || problem_.upper()(i) < kUnbounded) {
-        list_.push_back({false, i});
-      }
-    }
-  }
-  const ChainProblem& problem_;
-  std::vector<RowPlace> list_;
-};
 
 /// A jump, or what is left of its landing.
 struct ChainCase {
   double distance;  ///< [m]
   double height;    ///< [m]
   int landed_steps = 0;
+  bool is_corrected = false;  ///< By noise, between the knots.
 
   [[nodiscard]] PlannerConfig config() const {
     PlannerConfig config = shipped_config();
@@ -91,6 +28,21 @@ struct ChainCase {
 /// Jumps, each near its guess but off it, as blocks and as a chain.
 class ChainTest : public testing::TestWithParam<ChainCase> {
  protected:
+  void SetUp() override {
+    if (!GetParam().is_corrected) return;
+    ChainCorrection correction(problem_.layout());
+    unsigned seed = 100;
+    for (StepCorrection& step : correction.steps) {
+      const std::vector<double> numbers = random_point(2 * model::kPlanarLinks, seed++);
+      for (std::size_t j = 0; j < model::kPlanarLinks; ++j) {
+        step.turn[j] = 0.01 * numbers[j];
+        step.acceleration[j] = numbers[model::kPlanarLinks + j];
+      }
+    }
+    problem_.correct(correction);
+    program_ = jump_program(model_, task_, layout_, correction.steps);
+  }
+
   /// From the start to the final posture at rest, knot after knot.
   [[nodiscard]] Eigen::VectorXd landing_guess() const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(layout_.size());

@@ -91,7 +91,8 @@ TEST_P(ChainProblemTest, HasTheSlopesOfTheBlocks) {
 
 INSTANTIATE_TEST_SUITE_P(Jumps, ChainProblemTest,
                          testing::Values(ChainCase{0.40, 0.10}, ChainCase{0.35, -0.20},
-                                         ChainCase{0.40, 0.0, 12}, ChainCase{0.40, 0.0, 3}));
+                                         ChainCase{0.40, 0.0, 12}, ChainCase{0.40, 0.0, 3},
+                                         ChainCase{0.40, 0.10, 0, true}));
 
 }  // namespace
 }  // namespace hopscotch::planner::testing_support

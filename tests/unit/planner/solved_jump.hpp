@@ -1,7 +1,7 @@
 #pragma once
 
 #include "planner/ipopt_problem.hpp"
-#include "planner/landing_phase.hpp"
+#include "planner/jump_program.hpp"
 #include "planner/warm_start.hpp"
 #include "tests/unit/planner/planner_fixture.hpp"
 
@@ -19,14 +19,9 @@ inline SolvedJump solve_jump(double distance, double height) {
   const PlanarModel model = shipped_model();
   const PlanarTask goal = task(model, distance, height);
   const DecisionLayout layout(model.config.steps);
-  BlockList blocks;
-  add_takeoff(model, goal, layout, blocks);
-  add_flight(model, goal, layout, blocks);
-  add_landing(model, goal, layout, blocks);
-  const NonlinearProgram program(layout.size(), std::move(blocks));
   const SolveOutcome outcome =
-      solve_with_ipopt(program, decision_bounds(model, goal, layout), decision_sizes(layout),
-                       {kinematic_guess(model, goal, layout)},
+      solve_with_ipopt(jump_program(model, goal, layout), decision_bounds(model, goal, layout),
+                       decision_sizes(layout), {kinematic_guess(model, goal, layout)},
                        {model.config.iterations_max, model.config.tolerance});
   return {model, goal, outcome, motion_from_decision(model, goal, layout, outcome.x)};
 }
