@@ -27,23 +27,30 @@ struct Found {
   std::string why_not;
 };
 
+Found only(const RunOnAir& run) {
+  if (run.is_alone) return {run.id, ""};
+  return {{},
+          "several runs with the id " + run_id_text(run.id) +
+              " are on, of the same scenario and seed: all would do it; stop all but one"};
+}
+
 Found find_run(const AskOptions& options, OperatorClient& client) {
-  const std::vector<std::uint64_t> runs = client.running(kListen);
+  const std::vector<RunOnAir> runs = client.running(kListen);
   std::string list;
-  for (const std::uint64_t run : runs) list += " " + run_id_text(run);
+  for (const RunOnAir& run : runs) list += " " + run_id_text(run.id);
   if (runs.empty()) {
     return {{}, "nobody answered: no run is on (start one with `hopscotch run SCENARIO --pace 1`)"};
   }
   if (options.run.empty()) {
-    if (runs.size() == 1) return {runs.front(), ""};
+    if (runs.size() == 1) return only(runs.front());
     return {{}, "several runs are on, choose one with --run:" + list};
   }
   std::uint64_t wanted = 0;
   if (!parse_run_id(options.run, wanted)) {
     throw core::ConfigError("--run " + options.run + ": a run id is up to 16 hexadecimal digits");
   }
-  for (const std::uint64_t run : runs) {
-    if (run == wanted) return {run, ""};
+  for (const RunOnAir& run : runs) {
+    if (run.id == wanted) return only(run);
   }
   return {{}, "nobody answered: run " + options.run + " is not on, but:" + list};
 }

@@ -7,11 +7,22 @@
 
 namespace hopscotch::apps {
 
+void note_status(const msgs::Tag& tag, std::vector<RunOnAir>& runs) {
+  const auto known =
+      std::find_if(runs.begin(), runs.end(), [&](const RunOnAir& r) { return r.id == tag.run_id; });
+  if (known == runs.end()) {
+    runs.push_back({.id = tag.run_id, .sequence = tag.sequence});
+    return;
+  }
+  if (tag.sequence <= known->sequence) known->is_alone = false;
+  known->sequence = tag.sequence;
+}
+
 OperatorClient::OperatorClient(const std::string& url)
     : link_(url, [this] {
         msgs::RunLogHandlers handlers;
         handlers.status = [this](core::Stamp, const msgs::Tagged<msgs::Status>& status) {
-          heard_.push_back(status.tag.run_id);
+          heard_.push_back(status.tag);
         };
         handlers.ack = [this](core::Stamp, const msgs::Tagged<msgs::Ack>& ack) {
           answers_.push_back(ack);
@@ -19,19 +30,17 @@ OperatorClient::OperatorClient(const std::string& url)
         return handlers;
       }()) {}
 
-std::vector<std::uint64_t> OperatorClient::running(double patience) {
+std::vector<RunOnAir> OperatorClient::running(double patience) {
   constexpr double kCompany_ms = 300.0;  // after the first run is heard, for others to be heard
   heard_.clear();
-  std::vector<std::uint64_t> runs;
+  std::vector<RunOnAir> runs;
   const Stopwatch watch;
   double until_ms = 1e3 * patience;
   bool company = false;
   while (watch.milliseconds() < until_ms) {
     constexpr int kStep_ms = 50;
     link_.receive(kStep_ms);
-    for (const std::uint64_t run : heard_) {
-      if (std::find(runs.begin(), runs.end(), run) == runs.end()) runs.push_back(run);
-    }
+    for (const msgs::Tag& tag : heard_) note_status(tag, runs);
     if (!runs.empty() && !company) {
       company = true;
       until_ms = std::min(until_ms, watch.milliseconds() + kCompany_ms);
@@ -66,9 +75,10 @@ std::optional<msgs::Ack> OperatorClient::ask(const core::OperatorCommand& comman
       }
     }
     answers_.clear();
-    if (std::find(heard_.begin(), heard_.end(), command.run_id) != heard_.end()) {
-      last_sign_ms = watch.milliseconds();
-    }
+    const bool is_on = std::any_of(heard_.begin(), heard_.end(), [&](const msgs::Tag& tag) {
+      return tag.run_id == command.run_id;
+    });
+    if (is_on) last_sign_ms = watch.milliseconds();
     heard_.clear();
     if (watch.milliseconds() > last_sign_ms + kSilence_ms) break;
   }

@@ -10,6 +10,16 @@
 
 namespace hopscotch::apps {
 
+/// A run that tells its status.
+struct RunOnAir {
+  std::uint64_t id = 0;
+  std::uint64_t sequence = 0;  ///< Of its last status.
+  bool is_alone = true;  ///< No other run has the same id: it would do what this one is asked.
+};
+
+/// Notes that a status with this tag was heard: of a sender numbers only grow.
+void note_status(const msgs::Tag& tag, std::vector<RunOnAir>& runs);
+
 /// The operator's end of the line: finds the running program and asks it.
 class OperatorClient {
  public:
@@ -18,14 +28,14 @@ class OperatorClient {
 
   /// Runs that tell their status, each once; returns soon after the first one is heard, at the
   /// latest after `patience` [s].
-  [[nodiscard]] std::vector<std::uint64_t> running(double patience);
+  [[nodiscard]] std::vector<RunOnAir> running(double patience);
 
   /// Sends a command (run id and sequence filled in) and waits for the answer of that run.
   /// @param patience Without an answer [s]; a run that falls silent ends the wait early.
   [[nodiscard]] std::optional<msgs::Ack> ask(const core::OperatorCommand& command, double patience);
 
  private:
-  std::vector<std::uint64_t> heard_;
+  std::vector<msgs::Tag> heard_;
   std::vector<msgs::Tagged<msgs::Ack>> answers_;
   msgs::LiveLink link_;
 };

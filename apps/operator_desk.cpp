@@ -30,7 +30,8 @@ void OperatorDesk::take_target(const OperatorCommand& command) {
   } else if (mode_ == Mode::stopping) {
     refuse(command, {Reason::not_now, "the run is being stopped"});
   } else {
-    withdraw_target("replaced by a newer target");
+    if (target_ && stage_ != Stage::fresh) standing_ = std::exchange(target_, std::nullopt);
+    if (target_) refuse(*target_, {Reason::withdrawn, "replaced by a newer target"});
     target_ = command;
     stage_ = Stage::fresh;
   }
@@ -38,6 +39,7 @@ void OperatorDesk::take_target(const OperatorCommand& command) {
 
 /// An unanswered target is refused; one that was accepted while held just goes.
 bool OperatorDesk::withdraw_target(const char* why) {
+  standing_.reset();
   if (!target_) return false;
   if (stage_ == Stage::fresh) refuse(*target_, {Reason::withdrawn, why});
   target_.reset();
@@ -50,12 +52,16 @@ std::optional<core::TargetOverride> OperatorDesk::due() const {
 
 void OperatorDesk::refuse_target(const Refusal& refusal, double open_in) {
   if (!due()) return;
-  refuse(*target_, refusal, open_in);
-  target_.reset();
+  Refusal why = refusal;
+  if (standing_) why.sentence += "; the target accepted before stands";
+  refuse(*target_, std::move(why), open_in);
+  target_ = std::exchange(standing_, std::nullopt);
+  stage_ = mode_ == Mode::held ? Stage::promised : Stage::released;
 }
 
 void OperatorDesk::accept_target(double start_in) {
   if (!due()) return;
+  standing_.reset();
   if (check_only()) {
     accept(*target_, "the robot is held and jumps there after `hopscotch command jump`");
     stage_ = Stage::promised;

@@ -12,7 +12,7 @@ namespace hopscotch::apps {
 /// What the operator has asked for and what has become of it: at most one landing target, which
 /// overrides the next choice and no further one, and the answers. A target that is given while the
 /// robot is held is checked at once and jumped to when it is released; should it be impossible by
-/// then, it gets a second answer that says so.
+/// then, it gets a second answer that says so. It stands until another one is accepted.
 class OperatorDesk {
  public:
   enum class Mode : std::uint8_t { free, held, stopping };
@@ -51,7 +51,8 @@ class OperatorDesk {
   enum class Stage : std::uint8_t { fresh, promised, released };
 
   Mode mode_ = Mode::free;
-  std::optional<core::OperatorCommand> target_;  ///< Not yet jumped to.
+  std::optional<core::OperatorCommand> target_;    ///< Not yet jumped to.
+  std::optional<core::OperatorCommand> standing_;  ///< Promised, while `target_` is fresh.
   Stage stage_ = Stage::fresh;
   std::vector<core::OperatorAnswer> answers_;
 };

@@ -15,7 +15,7 @@ SessionConfig SessionConfig::load(const ConfigReader& section) {
   config.settle = section.number("settle_s", Range::closed(0.0, 60.0));
   config.enable_timeout = section.number("enable_timeout_s", Range::above(0.0, 60.0));
   config.has_eyes = section.choice("floor", {"level", "camera"}) == 1;
-  config.jump_distance = section.number("jump_m", Range::closed(0.05, 0.60));
+  config.jump_distance = section.number("jump_m", Range::closed(0.06, 0.55));
   config.jumps_per_command = section.integer("jumps_per_command", 0, 1'000'000);
   section.finish();
   return config;

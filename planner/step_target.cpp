@@ -6,6 +6,8 @@ namespace hopscotch::planner {
 
 namespace {
 
+/// A jump of the library that ends further from the place asked for is no answer [m].
+constexpr double kPlaceTolerance = 1e-3;
 constexpr double kEdgeAheadOfStart = 0.12;  // [m]
 constexpr double kEdgeBeforeTarget = 0.12;  // [m]
 constexpr double kLowered = 0.04;           // [m]
@@ -23,6 +25,7 @@ core::LandingTarget step_target(const StepRequest& request, const model::RobotPa
   target.heading = 0.0;
   target.distance = request.distance;
   target.height = request.height;
+  target.margin = kPlaceTolerance;
   target.source = core::TargetSource::operator_override;
   const Eigen::Isometry3d X_WT =
       Eigen::Translation3d(request.distance, request.lateral, request.height) *

@@ -36,7 +36,8 @@ const Size kSlope{"slope_rad", Range::closed(-0.4, 0.4), 0.08};
 const Size kDrop{"drop_m", Range::closed(0.0, 1.0), 0.25};
 const Size kLateral{"lateral_m", Range::closed(-0.3, 0.3), 0.0};
 const Size kYaw{"yaw_rad", Range::closed(-0.5, 0.5), 0.0};
-const Size kJump{"jump_m", Range::closed(0.05, 1.0), 0.40};
+/// Up to the farthest that footstep chooses (`footstep.reach`).
+const Size kJump{"jump_m", Range::closed(0.06, 0.55), 0.40};
 
 struct FamilyRule {
   Family family;

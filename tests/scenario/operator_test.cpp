@@ -50,7 +50,8 @@ class OperatorOfARun : public ::testing::Test {
     client_.emplace(live_url());
     const auto runs = client_->running(30.0);
     ASSERT_EQ(runs.size(), 1U);
-    id_ = runs[0];
+    EXPECT_TRUE(runs[0].is_alone);
+    id_ = runs[0].id;
   }
   fs::path out() const { return folder_ / "out"; }
 

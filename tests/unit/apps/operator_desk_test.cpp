@@ -111,6 +111,45 @@ TEST(OperatorDesk, APromiseThatCannotBeKeptIsTakenBack) {
   EXPECT_EQ(desk.take_answers().at(0).refusal.reason, Reason::terrain_unseen);
 }
 
+/// @param mode In which the newer target is judged.
+OperatorDesk desk_with_a_promise(Mode mode) {
+  OperatorDesk desk;
+  desk.set_mode(Mode::held);
+  desk.take_target(target_at(0.45, 1));
+  desk.accept_target(0.0);
+  desk.set_mode(mode);
+  desk.take_target(target_at(0.25, 2));
+  EXPECT_EQ(desk.take_answers().size(), 1U);
+  return desk;
+}
+
+TEST(OperatorDesk, APromiseStandsWhenANewerTargetIsRefused) {
+  for (const Mode mode : {Mode::held, Mode::free}) {
+    OperatorDesk desk = desk_with_a_promise(mode);
+    desk.refuse_target({Reason::no_safe_target, "a pit"});
+    EXPECT_EQ(desk.take_answers().at(0).refusal.sentence,
+              "a pit; the target accepted before stands");
+    desk.set_mode(Mode::free);
+    ASSERT_TRUE(desk.due());
+    EXPECT_EQ(desk.due()->distance, 0.45);
+    desk.refuse_target({Reason::no_safe_target, "a pit"});
+    EXPECT_EQ(desk.take_answers().at(0).refusal.sentence, "a pit");
+    EXPECT_FALSE(desk.due());
+  }
+}
+
+TEST(OperatorDesk, APromiseEndsWhenANewerTargetIsAcceptedOrAllAreDropped) {
+  OperatorDesk desk = desk_with_a_promise(Mode::held);
+  desk.accept_target(0.0);
+  desk.set_mode(Mode::free);
+  EXPECT_EQ(desk.due()->distance, 0.25);
+
+  OperatorDesk cleared = desk_with_a_promise(Mode::held);
+  EXPECT_TRUE(cleared.withdraw_target("cleared"));
+  cleared.set_mode(Mode::free);
+  EXPECT_FALSE(cleared.due());
+}
+
 TEST(OperatorDesk, AStoppingRunTakesNoTargets) {
   OperatorDesk desk;
   desk.take_target(target_at(0.3, 1));

@@ -112,6 +112,20 @@ TEST(ShippedJumps, HighStepsBetweenThemAreSolvedToWhereTheyWereAskedFor) {
   }
 }
 
+TEST(ShippedJumps, NoJumpToAnotherPlaceIsAnAnswer) {
+  const model::RobotParameters robot = model::RobotParameters::load(robot_file("hector"));
+  planner::JumpPlanner planner(config().planner, robot,
+                               shipped_jumps("hector", config().planner.steps));
+  int planned = 0;
+  for (double distance = 0.60; distance < 0.68; distance += 0.005) {
+    const auto plan = planner.plan(from_standing(robot, distance, 0.0));
+    if (!plan) continue;
+    ++planned;
+    EXPECT_NEAR(plan->target.distance, distance, 1.1e-3);
+  }
+  EXPECT_GT(planned, 0);
+}
+
 TEST(ShippedJumps, CorrectionsThatOvershootSettleByHalves) {
   const model::RobotParameters robot = model::RobotParameters::load(robot_file("hector"));
   planner::JumpPlanner planner(config().planner, robot,

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "apps/campaign/scenario_text.hpp"
 #include "apps/campaign/trial_setup.hpp"
+#include "apps/installation.hpp"
+#include "apps/program_config.hpp"
 #include "core/config_reader.hpp"
 
 namespace hopscotch::apps::campaign {
@@ -49,6 +52,18 @@ TEST(CampaignSpec, ReadsTheDocumentedExample) {
   EXPECT_EQ(spec.family.treads, 6);
   EXPECT_EQ(spec.eyes, Eyes::camera);
   EXPECT_EQ(spec.state, StateSource::estimate);
+}
+
+/// Else the robot would choose a shorter jump and succeed.
+TEST(CampaignSpec, JumpsThatAreNeverChosenAreRefused) {
+  const ProgramConfig shipped = ProgramConfig::load(config_directory() / "hopscotch.yaml");
+  const std::vector<double>& reach = shipped.footstep.reach.distance_max;
+  const double farthest = *std::max_element(reach.begin(), reach.end());
+  const auto leap = [](double distance) {
+    return kHead + "scenario: {family: leap, jump_m: " + std::to_string(distance) + "}\n";
+  };
+  EXPECT_EQ(error_of(leap(farthest)), "");
+  EXPECT_THAT(error_of(leap(farthest + 0.01)), HasSubstr("jump_m"));
 }
 
 TEST(CampaignSpec, ErrorsNameFileLineKeyValueAndRule) {
