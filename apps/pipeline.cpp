@@ -23,6 +23,11 @@ double height_aimed_at(const core::JumpPlan& plan) {
   return plan.target.p_WS.z() + plan.target.height;
 }
 
+planner::Formulation formulation_of(core::Ablation ablation) {
+  return ablation == core::Ablation::srbd_only ? planner::Formulation::single_body
+                                               : planner::Formulation::variable;
+}
+
 /// As HOP_SENSORS carries them, so that a replay of the log computes from the same bits.
 core::SensorReadings recorded(core::SensorReadings readings) {
   const auto round = [](auto& numbers) {
@@ -319,7 +324,8 @@ void Pipeline::make_decision(const DecisionQuestion& question, Decision& decisio
   planner::PlanRequest request{.start = rest,
                                .target = *decision.choice.target,
                                .final_posture = config_.stand_posture,
-                               .id = plan_id};
+                               .id = plan_id,
+                               .formulation = formulation_of(config_.control.ablation)};
   plan_jump(request, decision);
   // Ground that cannot be cleared as high as it might be is cleared as high as possible.
   footstep::LandingTask bolder = task;

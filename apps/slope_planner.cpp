@@ -42,7 +42,8 @@ core::Result<core::JumpPlan> SlopePlanner::plan(const planner::PlanRequest& requ
   solved_ = false;
   if (!(friction < config_.friction)) {
     core::Result<core::JumpPlan> plan = level_.plan(request);
-    solved_ = plan && level_.rung() != planner::PlanRung::library;
+    solved_ = plan && request.formulation == planner::Formulation::variable &&
+              level_.rung() != planner::PlanRung::library;
     return plan;
   }
   planner::PlannerConfig config = config_;

@@ -210,7 +210,6 @@ bool JumpPlanner::Memory::has_time() {
 
 /// The ladder: the first rung that gives a certified plan.
 core::Result<core::JumpPlan> JumpPlanner::Memory::climb_down(const Trial& trial) {
-  rung = PlanRung::solved;
   core::Result<core::JumpPlan> first = no_plan();
   if (trial.request.guess == StartGuess::previous && last && has_time()) {
     const KnownJump from = *last;
@@ -340,6 +339,7 @@ core::Result<core::JumpPlan> JumpPlanner::plan(const PlanRequest& request) {
   const PlanarModel& model = straight ? memory_->straight : memory_->sideways;
   memory_->obstacle = {};
   memory_->iterations = 0;
+  memory_->rung = PlanRung::solved;
   const core::Result<PlanarTask> task = planar_task(model, request);
   if (!task) return task.error();
   if (request.formulation != Formulation::variable) return memory_->plan_otherwise(request, *task);
