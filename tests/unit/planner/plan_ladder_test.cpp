@@ -72,9 +72,16 @@ TEST_F(PlanLadder, WhatCannotBeSolvedFromTheGuessIsSolvedFromANeighbour) {
   EXPECT_GT(plan->certificate.binding().margin, 0.0);
 }
 
+/// With room around the landing place, as on a wide tread.
+PlanRequest roomy_request(double distance, double height) {
+  PlanRequest roomy = request(distance, height);
+  roomy.target.margin = 0.1;
+  return roomy;
+}
+
 TEST_F(PlanLadder, WithoutANeighbourThatSolvesALibraryJumpIsTakenAsItIs) {
   JumpPlanner planner = planner_with(1);
-  const core::Result<core::JumpPlan> plan = planner.plan(request(0.42, 0.005));
+  const core::Result<core::JumpPlan> plan = planner.plan(roomy_request(0.42, 0.005));
   ASSERT_TRUE(plan) << plan.error().text();
   EXPECT_EQ(planner.rung(), PlanRung::library);
   // It says where it really lands.
@@ -87,9 +94,9 @@ TEST_F(PlanLadder, WithoutANeighbourThatSolvesALibraryJumpIsTakenAsItIs) {
 
 TEST_F(PlanLadder, BelowTheLastRungTheRobotStands) {
   JumpPlanner planner = planner_with(1);
-  EXPECT_FALSE(planner.plan(request(0.45, 0.0)));   // no jump of the library ends there
-  EXPECT_FALSE(planner.plan(request(0.40, 0.03)));  // nor so high
-  PlanRequest leaning = request(0.40, 0.0);
+  EXPECT_FALSE(planner.plan(roomy_request(0.45, 0.0)));   // no jump of the library ends there
+  EXPECT_FALSE(planner.plan(roomy_request(0.40, 0.03)));  // nor so high
+  PlanRequest leaning = roomy_request(0.40, 0.0);
   leaning.start.q(core::joint_index(core::Leg::left, core::Joint::knee)) += 0.2;
   leaning.start.q(core::joint_index(core::Leg::right, core::Joint::knee)) += 0.2;
   leaning.start.q(core::joint_index(core::Leg::left, core::Joint::ankle)) -= 0.2;
