@@ -198,6 +198,9 @@ TEST(Scenario, EachAblationIsDifferent) {
     ASSERT_FALSE(less.jumps.empty()) << core::kAblationNames[i];
     EXPECT_NE(less.jumps[0].peak.normal_force, whole.jumps[0].peak.normal_force)
         << core::kAblationNames[i];
+    // One rigid body knows nothing of motors: only its plan breaks their limits.
+    const bool broken = less.jumps[0].plan.binding_margin < -0.1;
+    EXPECT_EQ(broken, request.ablation == core::Ablation::srbd_only) << core::kAblationNames[i];
   }
 }
 
