@@ -55,13 +55,6 @@ inline ControlConfig test_config() {
 class ControlTickFixture : public ::testing::Test {
  protected:
   ControlTickFixture() {
-    state_.p_WB = {0.0, 0.0, 0.5481};
-    state_.R_WB.setIdentity();
-    state_.v_WB.setZero();
-    state_.w_WB.setZero();
-    state_.q << 0, 0, 0.7854, -1.5708, 0.7854, 0, 0, 0.7854, -1.5708, 0.7854;
-    state_.dq.setZero();
-    state_.contact = {true, true};
     plan_ = jump_shaped_plan(state_.q);
     for (std::size_t i = 5; i < 10; ++i) plan_.knots[i].v_WG.z() = 1.0;  // pushes off from 0.1 s
   }
@@ -101,7 +94,7 @@ class ControlTickFixture : public ::testing::Test {
 
   model::RobotParameters robot_ =
       model::RobotParameters::load(HOPSCOTCH_SOURCE_DIR "/config/robots/hector.yaml");
-  core::RobotState state_;
+  core::RobotState state_ = standing_robot();
   core::JumpPlan plan_;
 };
 

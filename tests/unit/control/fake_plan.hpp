@@ -1,8 +1,22 @@
 #pragma once
 
 #include "core/jump_plan.hpp"
+#include "core/robot_state.hpp"
 
 namespace hopscotch::control::testing {
+
+/// The robot at rest on both feet.
+inline core::RobotState standing_robot() {
+  core::RobotState state;
+  state.p_WB = {0.0, 0.0, 0.5481};
+  state.R_WB.setIdentity();
+  state.v_WB.setZero();
+  state.w_WB.setZero();
+  state.q << 0, 0, 0.7854, -1.5708, 0.7854, 0, 0, 0.7854, -1.5708, 0.7854;
+  state.dq.setZero();
+  state.contact = {true, true};
+  return state;
+}
 
 /// A plan with the shape of a jump and simple numbers: 0.2 s takeoff in steps of 20 ms, 0.1 s
 /// flight in steps of 25 ms, 0.12 s landing in steps of 30 ms. Everything scalar moves with

@@ -32,13 +32,6 @@ const SupervisorConfig kConfig{.touchdown_from = 0.5,
 class JumpSupervisorTest : public ::testing::Test {
  protected:
   JumpSupervisorTest() {
-    state_.p_WB = {0.0, 0.0, 0.55};
-    state_.R_WB.setIdentity();
-    state_.v_WB.setZero();
-    state_.w_WB.setZero();
-    state_.q << 0, 0, 0.785, -1.571, 0.785, 0, 0, 0.785, -1.571, 0.785;
-    state_.dq.setZero();
-    state_.contact = {true, true};
     plan_ = testing::jump_shaped_plan(state_.q);
     for (std::size_t i = 5; i < 10; ++i) plan_.knots[i].v_WG.z() = 1.0;  // pushes off from 0.1 s
   }
@@ -54,7 +47,7 @@ class JumpSupervisorTest : public ::testing::Test {
   model::RobotParameters robot_ =
       model::RobotParameters::load(HOPSCOTCH_SOURCE_DIR "/config/robots/hector.yaml");
   JumpSupervisor supervisor_{kConfig, robot_};
-  core::RobotState state_;
+  core::RobotState state_ = testing::standing_robot();
   core::JumpPlan plan_;
 };
 
