@@ -10,9 +10,9 @@
 #include "apps/lockstep_run.hpp"
 #include "apps/run_recorder.hpp"
 #include "apps/stopwatch.hpp"
-#include "apps/text_file.hpp"
 #include "control/wrench_qp_record.hpp"
 #include "core/config_reader.hpp"
+#include "core/input_file.hpp"
 
 namespace hopscotch::apps {
 
@@ -53,7 +53,7 @@ void solve_recorded(const control::WrenchQpRecord& record, control::QpSolver& co
 }
 
 std::vector<control::WrenchQpRecord> read_records(const std::filesystem::path& file) {
-  const std::string bytes = read_file(file);
+  const std::string bytes = core::read_input_file(file);
   const auto records =
       control::decode_wrench_qps(std::as_bytes(std::span<const char>(bytes.data(), bytes.size())));
   if (!records) throw core::ConfigError(file.string() + ": is no file of recorded QPs");

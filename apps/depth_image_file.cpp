@@ -9,8 +9,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
-#include "apps/text_file.hpp"
 #include "core/config_reader.hpp"
+#include "core/input_file.hpp"
 
 namespace hopscotch::apps {
 
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kBytesMax = 256U << 20U;
+constexpr std::uintmax_t kLargest = 256;  // [MiB]
 /// Depth cameras for robots measure between these; a median outside is a wrong scale.
 constexpr double kMedianMin = 0.12;  // [m]
 constexpr double kMedianMax = 12.0;  // [m]
@@ -142,9 +142,7 @@ bool is_image_file(const fs::path& file) {
 }
 
 RawDepthImage read_depth_image(const fs::path& file) {
-  if (!fs::is_regular_file(file)) reject(file, "is no file");
-  if (fs::file_size(file) > kBytesMax) reject(file, "is larger than any depth image");
-  const std::string bytes = read_file(file);
+  const std::string bytes = core::read_input_file(file, kLargest);
   const Format format = format_of(bytes);
   if (format == Format::none) reject(file, "is no PNG, PGM (P5) or TIFF");
   if (format == Format::pgm) check_pgm(file, bytes);

@@ -1,9 +1,11 @@
 #include "apps/scene_terrain.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "apps/stopwatch.hpp"
@@ -158,6 +160,15 @@ std::string status_of(const SceneRecording& recording, const SceneTerrain& scene
   return "ok";
 }
 
+/// By its first bytes or, where they say nothing, by its name: then the reader of images says what
+/// is wrong with it.
+bool holds_image(const std::filesystem::path& file) {
+  static constexpr std::array<std::string_view, 4> kEndings{".png", ".pgm", ".tif", ".tiff"};
+  const std::string ending = file.extension().string();
+  return is_image_file(file) ||
+         std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
 }  // namespace
 
 perception::PointCloud cloud_of(const core::DepthFrame& frame,
@@ -199,7 +210,7 @@ core::RobotState standing_at(const ProgramConfig& config, const model::RobotPara
 
 SceneRecording read_scene(const SceneRequest& request, const ProgramConfig& config) {
   SceneRecording recording;
-  if (is_image_file(request.file)) {
+  if (holds_image(request.file)) {
     recording.frame = depth_frame_of(request.file, read_depth_image(request.file), request.scaling);
     recording.cloud = cloud_of(*recording.frame, config.perception);
   } else {

@@ -10,8 +10,10 @@ namespace hopscotch::apps {
 std::string read_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream content;
-  content << stream.rdbuf();
-  if (!stream || !content) throw std::runtime_error("cannot read " + file.string());
+  // An empty file is read too; putting no character would count as a failure.
+  if (stream.peek() != std::ifstream::traits_type::eof()) content << stream.rdbuf();
+  if (!stream.is_open() || stream.bad() || !content)
+    throw std::runtime_error("cannot read " + file.string());
   return content.str();
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/config_shape.hpp"
+#include "core/input_file.hpp"
 
 namespace hopscotch::core {
 
@@ -136,19 +137,7 @@ std::string shown_value(const YAML::Node& value) {
 ConfigReader::ConfigReader(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
 ConfigReader ConfigReader::from_file(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    throw ConfigError(file.string() + ": no such file");
-  }
-  std::FILE* stream = std::fopen(file.c_str(), "rb");
-  if (stream == nullptr) throw ConfigError(file.string() + ": cannot be read");
-  std::string text;
-  std::array<char, 65536> block{};
-  for (std::size_t n = 0; (n = std::fread(block.data(), 1, block.size(), stream)) > 0;) {
-    text.append(block.data(), n);
-  }
-  std::fclose(stream);
-  return from_text(text, file.string());
+  return from_text(read_input_file(file), file.string());
 }
 
 ConfigReader ConfigReader::from_text(std::string_view text, std::string name) {

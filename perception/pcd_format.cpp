@@ -73,7 +73,7 @@ Header take_header(std::string_view& bytes) {
   std::map<std::string_view, std::string_view> lines;
   while (!lines.contains("DATA")) {
     std::optional<std::string_view> line = next_line(bytes);
-    if (!line) throw MalformedCloud("the PCD header has no DATA line");
+    if (!line) throw MalformedCloud("is no PCD: it has no DATA line");
     const std::string_view key = next_word(*line);
     if (!key.empty() && key.front() != '#') lines[key] = *line;
   }

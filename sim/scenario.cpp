@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/input_file.hpp"
+
 namespace hopscotch::sim {
 namespace {
 
@@ -239,7 +241,7 @@ Terrain Scenario::true_terrain() const {
 
 Scenario Scenario::from_reader(const ConfigReader& reader) {
   Scenario scenario;
-  scenario.name = reader.text("name");
+  scenario.name = core::read_plain_name(reader, "name");
   scenario.robot = read_robot(reader, scenario.robot);
   scenario.friction = reader.number_or("friction", scenario.friction, Range::above(0.0, 2.0));
   scenario.seen.pit_depth =

@@ -63,7 +63,7 @@ struct PlantSetup {
 /// One scenario file, checked: terrain, robot, disturbances and goal.
 /// W is the scenario's frame: the controller's W is the same one when it is given the true state.
 struct Scenario {
-  std::string name;
+  std::string name;              ///< Of its folder of runs too, see core::read_plain_name.
   std::string robot = "hector";  ///< What the controller believes it drives.
   double friction = 0.6;         ///< Sole on ground unless a slab says otherwise [-].
   CameraSettings camera;         ///< Section `camera`.

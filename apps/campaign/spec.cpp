@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "apps/campaign/scenario_text.hpp"
-#include "apps/text_file.hpp"
+#include "core/input_file.hpp"
 
 namespace hopscotch::apps::campaign {
 
@@ -195,7 +195,7 @@ CampaignSpec CampaignSpec::from_text(std::string_view text, const fs::path& file
   const ConfigReader& reader = root.reader;
   CampaignSpec spec;
   spec.source = text;
-  spec.name = reader.text("name");
+  spec.name = core::read_plain_name(reader, "name");
   read_scenario(root, file, spec);
   if (reader.has("perception")) {
     spec.eyes = static_cast<Eyes>(reader.choice("perception", {"camera", "truth"}));
@@ -220,11 +220,7 @@ CampaignSpec CampaignSpec::from_text(std::string_view text, const fs::path& file
 }
 
 CampaignSpec CampaignSpec::load(const fs::path& file) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) {
-    throw core::ConfigError(file.string() + ": no such file");
-  }
-  return from_text(read_file(file), file);
+  return from_text(core::read_input_file(file), file);
 }
 
 }  // namespace hopscotch::apps::campaign

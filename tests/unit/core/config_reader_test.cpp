@@ -294,7 +294,7 @@ TEST_F(ConfigFile, ThatIsMissingIsNamed) {
 
 TEST_F(ConfigFile, ThatIsAFolderIsRefused) {
   EXPECT_EQ(complaint([&] { ConfigReader::from_file(folder_); }),
-            folder_.string() + ": no such file");
+            folder_.string() + ": is no regular file");
 }
 
 TEST_F(ConfigFile, LongerThanOneBlockIsReadToItsEnd) {

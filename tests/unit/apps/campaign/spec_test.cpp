@@ -83,6 +83,8 @@ TEST(CampaignSpec, ErrorsNameFileLineKeyValueAndRule) {
               HasSubstr("twice"));
   EXPECT_THAT(error_of(kHead + "scenario: {family: flat}\nvary: {plant.latency_ms: [0.5, 2]}\n"),
               HasSubstr("whole multiple"));
+  EXPECT_THAT(error_of("trials: 1\nname: ../x\nscenario: {family: flat}\n"),
+              HasSubstr("campaign.yaml:2: name = ../x"));
   EXPECT_THAT(
       error_of(kHead + "scenario: {family: flat}\nvary: {surprise_height_m: [-0.1, 0.1]}\n"),
       HasSubstr("one slab only"));
