@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -203,14 +204,14 @@ core::Refusal malformed(const ReachConfig& reach, const core::TargetOverride& wa
   if (!finite) return {Reason::target_malformed, "distance, lateral and yaw must be numbers"};
   const double longest = longest_reach(reach);
   if (wanted.distance > longest) {
-    return {Reason::out_of_reach, std::to_string(wanted.distance) +
-                                      " m is further than any jump, " + std::to_string(longest) +
-                                      " m"};
+    return {Reason::out_of_reach,
+            in_cm(wanted.distance) + " is farther than any jump; the longest is " + in_cm(longest)};
   }
   if (std::abs(wanted.lateral) > reach.lateral_max || std::abs(wanted.yaw) > reach.yaw_max) {
-    return {Reason::out_of_reach, "jumps to the side or with a turn are limited to " +
-                                      std::to_string(reach.lateral_max) + " m and " +
-                                      std::to_string(reach.yaw_max) + " rad"};
+    char turn[32];
+    std::snprintf(turn, sizeof turn, "%.2f rad", reach.yaw_max);
+    return {Reason::out_of_reach, "a jump leads at most " + in_cm(reach.lateral_max) +
+                                      " to a side and turns at most " + turn};
   }
   return {};
 }
@@ -230,15 +231,14 @@ void choose_wanted(const StepRules& rules, const StanceOnMap& stance,
   if (judged.why == Reason::none) judged.why = step_verdict(rules, takeoff, foothold);
   if (judged.why != Reason::none) {
     list_rejected(judged, choice);
-    choice.refusal = explain_place(rules.config, judged);
+    choice.refusal = explain_place(rules.config, judged, leap_to(takeoff, foothold));
     return;
   }
   const double difference = wanted.height - foothold.height;
   if (std::abs(difference) > rules.config.foothold.edge_tolerance) {  // false without a wish
     list_rejected({foothold, Reason::no_safe_target}, choice);
-    choice.refusal = {Reason::no_safe_target,
-                      "the ground there is " + std::to_string(foothold.height) + " m high, not " +
-                          std::to_string(wanted.height) + " m"};
+    choice.refusal = {Reason::no_safe_target, "the ground there is " + in_cm(foothold.height) +
+                                                  " high, not " + in_cm(wanted.height)};
     return;
   }
   list_ranked(foothold, stance.half_length, choice);

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/one_step_terrain.hpp"
 #include "core/reason.hpp"
 #include "footstep/foothold_score.hpp"
 #include "footstep/footstep_config.hpp"
+#include "footstep/reachability.hpp"
 
 namespace hopscotch::footstep {
 
@@ -22,7 +24,11 @@ struct JudgedFoothold {
                                             const std::vector<JudgedFoothold>& judged);
 
 /// The refusal of one particular place that was asked for.
+/// @param leap  The jump there.
 [[nodiscard]] core::Refusal explain_place(const FootstepConfig& config,
-                                          const JudgedFoothold& judged);
+                                          const JudgedFoothold& judged, const Leap& leap);
+
+/// A length [m] in centimetres, as people speak of steps and gaps, e.g. "35.0 cm".
+[[nodiscard]] std::string in_cm(double length);
 
 }  // namespace hopscotch::footstep

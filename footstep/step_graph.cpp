@@ -85,11 +85,14 @@ Takeoff takeoff_from(const Foothold& foothold, double half_length) {
   return {.x = foothold.placement.x, .height = foothold.height, .edge = goes_on ? kInfinity : edge};
 }
 
+Leap leap_to(const Takeoff& from, const Foothold& to) {
+  return {.distance = to.placement.x - from.x,
+          .height = to.height - from.height,
+          .takeoff_edge = from.edge - from.x};
+}
+
 Reason step_verdict(const StepRules& rules, const Takeoff& from, const Foothold& to) {
-  const Leap leap{.distance = to.placement.x - from.x,
-                  .height = to.height - from.height,
-                  .takeoff_edge = from.edge - from.x};
-  const Reason reach = reach_verdict(rules.config.reach, leap);
+  const Reason reach = reach_verdict(rules.config.reach, leap_to(from, to));
   if (reach != Reason::none) return reach;
   const double start = from.x + rules.half_length;
   const double end = to.placement.x + rules.half_length;

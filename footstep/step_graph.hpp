@@ -7,6 +7,7 @@
 #include "core/reason.hpp"
 #include "footstep/foothold_score.hpp"
 #include "footstep/footstep_config.hpp"
+#include "footstep/reachability.hpp"
 #include "footstep/terrain_profile.hpp"
 
 namespace hopscotch::footstep {
@@ -36,6 +37,9 @@ struct Takeoff {
 };
 
 [[nodiscard]] Takeoff takeoff_from(const Foothold& foothold, double half_length);
+
+/// One jump along the line.
+[[nodiscard]] Leap leap_to(const Takeoff& from, const Foothold& to);
 
 /// Whether one jump along the line can be made: `none`, or the reason of the reach table, or
 /// terrain_unseen when it leads over unbounded ground, step_too_high over a hurdle, or

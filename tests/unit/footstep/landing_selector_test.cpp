@@ -250,7 +250,8 @@ TEST(LandingSelector, OperatorsTargetIsJudgedByTheSameRules) {
   task.target = core::TargetOverride{.distance = 0.25};  // over the gap
   EXPECT_EQ(known.choose(task).refusal.reason, Reason::no_safe_target);
   task.target = core::TargetOverride{.distance = 0.46, .height = 0.2};
-  EXPECT_EQ(known.choose(task).refusal.reason, Reason::no_safe_target);
+  EXPECT_EQ(known.choose(task).refusal.text(),
+            "no_safe_target: the ground there is 3.0 cm high, not 20.0 cm");
   task.target = core::TargetOverride{.distance = 0.46, .height = 0.035};
   EXPECT_TRUE(known.choose(task).target);
 }
@@ -259,11 +260,13 @@ TEST(LandingSelector, OperatorsTargetOutOfReachOrMalformedIsRefused) {
   const KnownCourse known(kFlat);
   LandingTask task;
   task.target = core::TargetOverride{.distance = 0.9};
-  EXPECT_EQ(known.choose(task).refusal.reason, Reason::out_of_reach);
+  EXPECT_EQ(known.choose(task).refusal.text(),
+            "out_of_reach: 90.0 cm is farther than any jump; the longest is 55.0 cm");
   task.target = core::TargetOverride{.distance = core::kNaN};
   EXPECT_EQ(known.choose(task).refusal.reason, Reason::target_malformed);
   task.target = core::TargetOverride{.distance = 0.4, .lateral = 0.5};
-  EXPECT_EQ(known.choose(task).refusal.reason, Reason::out_of_reach);
+  EXPECT_EQ(known.choose(task).refusal.text(),
+            "out_of_reach: a jump leads at most 10.0 cm to a side and turns at most 0.26 rad");
   task.target =
       core::TargetOverride{.distance = 0.4, .yaw = std::numeric_limits<double>::infinity()};
   EXPECT_EQ(known.choose(task).refusal.reason, Reason::target_malformed);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/unit/footstep/known_course.hpp"
 
 namespace hopscotch::footstep {
@@ -65,11 +67,49 @@ TEST_F(RefusalTest, NothingSeenIsUnseen) {
 TEST_F(RefusalTest, EveryReasonOfAPlaceHasASentence) {
   for (const Reason why : {Reason::terrain_unseen, Reason::step_too_high, Reason::step_too_low,
                            Reason::out_of_reach, Reason::tread_too_short, Reason::no_safe_target}) {
-    const core::Refusal refusal = explain_place(config_, place(0.4, 0.1, why));
+    const core::Refusal refusal =
+        explain_place(config_, place(0.7, 0.1, why), {.distance = 0.7, .height = 0.1});
     EXPECT_EQ(refusal.reason, why);
-    EXPECT_NE(refusal.sentence.find("40.0 cm"), std::string::npos) << refusal.sentence;
+    EXPECT_NE(refusal.sentence.find("70.0 cm"), std::string::npos) << refusal.sentence;
   }
 }
+
+struct UnreachedCase {
+  Leap leap;
+  const char* sentence;
+};
+
+class UnreachedPlace : public ::testing::TestWithParam<UnreachedCase> {};
+
+TEST_P(UnreachedPlace, IsRefusedByTheOneRuleItBreaks) {
+  FootstepConfig config = test::footstep_config();
+  config.reach.height = {-0.3, 0.2};
+  config.reach.distance_min = {0.06, 0.06};
+  config.reach.distance_max = {0.55, 0.55};
+  config.reach.takeoff_edge_max = {0.12, 0.12};
+  config.reach.past_edge_min = {0.2, 0.2};
+  const Leap& leap = GetParam().leap;
+  ASSERT_EQ(reach_verdict(config.reach, leap), Reason::out_of_reach);
+  const JudgedFoothold judged = place(leap.distance, leap.height, Reason::out_of_reach);
+  EXPECT_EQ(explain_place(config, judged, leap).sentence, GetParam().sentence);
+}
+
+constexpr double kNoEdge = std::numeric_limits<double>::infinity();
+INSTANTIATE_TEST_SUITE_P(
+    Refusal, UnreachedPlace,
+    ::testing::Values(
+        UnreachedCase{{0.0, 0.0, kNoEdge}, "0.0 cm is too near; the shortest jump is 6.0 cm"},
+        UnreachedCase{{0.6, 0.1, kNoEdge},
+                      "60.0 cm is too far; a jump to that height reaches 55.0 cm"},
+        UnreachedCase{
+            {0.5, -0.2, 0.2},
+            "a jump down by 20.0 cm starts at most 12.0 cm before the edge, which is 20.0 "
+            "cm ahead"},
+        UnreachedCase{
+            {0.25, -0.2, 0.1},
+            "a jump down by 20.0 cm lands at least 20.0 cm beyond the edge, which is 10.0 "
+            "cm ahead; 25.0 cm is too near"},
+        UnreachedCase{{0.5, -0.2, kNoEdge}, "no edge to jump down from is seen on the way"}));
 
 }  // namespace
 }  // namespace hopscotch::footstep
