@@ -46,7 +46,6 @@ class EmulatedRobot {
   /// Of the last tick's beginning, in axes of B; nothing while the unit is switched off.
   [[nodiscard]] std::optional<hardware::ImuSample> imu() const;
   void switch_imu_off() { imu_on_ = false; }
-  void switch_imu_on() { imu_on_ = true; }
 
   [[nodiscard]] core::Stamp now() const;
   [[nodiscard]] bool in_harness() const { return in_harness_; }

@@ -77,7 +77,6 @@ class RobotSession {
   [[nodiscard]] bool clear_fault() noexcept;
 
   [[nodiscard]] SessionStage stage() const { return stage_; }
-  [[nodiscard]] hardware::SoftStop::Stage stop_stage() const { return soft_stop_.stage(); }
   [[nodiscard]] const SessionFault& fault() const { return fault_; }
   [[nodiscard]] const DeadlineCounters& deadlines() const { return deadlines_; }
   [[nodiscard]] const core::SensorReadings& readings() const { return readings_; }

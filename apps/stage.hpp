@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <cstdio>
@@ -88,11 +87,7 @@ class Stage {
       return nullptr;
     }
     if (!shown_ || now < due_) return nullptr;
-    const double late = now.since(due_);
-    if (thread_.joinable() && late > kTick) {
-      ++late_;
-      worst_ = std::max(worst_, late);
-    }
+    if (thread_.joinable() && now.since(due_) > kTick) ++late_;
     pending_ = false;
     return &answer_;
   }
@@ -104,9 +99,8 @@ class Stage {
 
   /// Wall time of the work behind the answer that made() gave last [ms].
   [[nodiscard]] double work_ms() const { return work_ms_; }
-  /// Answers that came later than declared, and by how much at most [s]. None in lock-step.
+  /// Answers that came later than declared. None in lock-step.
   [[nodiscard]] std::uint64_t late() const { return late_; }
-  [[nodiscard]] double worst_lateness() const { return worst_; }
 
  private:
   enum class State : std::uint8_t { idle, asked, made, closing };
@@ -156,7 +150,6 @@ class Stage {
   bool shown_ = false;
   core::Stamp due_;
   std::uint64_t late_ = 0;
-  double worst_ = 0.0;
   std::jthread thread_;  // last: it uses the others
 };
 

@@ -72,8 +72,6 @@ class JumpSupervisor {
 
   [[nodiscard]] core::RobotPhase phase() const { return phase_; }
   [[nodiscard]] core::Reason fault() const { return fault_; }
-  /// A hold was asked for where the robot could not stop; it holds once it has landed.
-  [[nodiscard]] bool hold_waits() const { return hold_waits_; }
 
  private:
   [[nodiscard]] core::Reason find_fault(const core::RobotState& state) const noexcept;
@@ -88,7 +86,7 @@ class JumpSupervisor {
   core::RobotPhase phase_ = core::RobotPhase::stand;
   core::Reason fault_ = core::Reason::none;
   double commit_time_ = 0.0;  ///< Of the plan being executed [s].
-  bool hold_waits_ = false;
+  bool hold_waits_ = false;   // asked for where the robot could not stop: it holds once landed
   bool hopping_ = false;
   core::Stamp loaded_;  ///< A foot bore load for the last time.
 };

@@ -253,12 +253,10 @@ TEST_F(EveryPhase, AHoldThatWaitedHoldsAfterTheLanding) {
   for (const RobotPhase phase : {RobotPhase::takeoff, RobotPhase::flight, RobotPhase::landing}) {
     JumpSupervisor machine = at(phase);
     EXPECT_TRUE(machine.hold());
-    EXPECT_TRUE(machine.hold_waits());
     machine.update(state_, plan_, 0.25);
     machine.update(state_, plan_, 0.30);
     machine.update(state_, plan_, 0.43);
     EXPECT_EQ(machine.phase(), RobotPhase::hold) << core::robot_phase_name(phase);
-    EXPECT_FALSE(machine.hold_waits());
   }
 }
 
@@ -302,7 +300,11 @@ TEST_F(EveryPhase, AHoldDuringARecoveryHopWaitsForItsLanding) {
   ASSERT_TRUE(machine.hop());
   EXPECT_TRUE(machine.hold());
   EXPECT_EQ(machine.update(state_, plan_, 0.1), RobotPhase::recover);
-  EXPECT_TRUE(machine.hold_waits());
+  core::RobotState flying = state_;
+  flying.contact = {false, false};
+  EXPECT_EQ(machine.update(flying, plan_, 0.200), RobotPhase::flight);
+  EXPECT_EQ(machine.update(state_, plan_, 0.260), RobotPhase::landing);
+  EXPECT_EQ(machine.update(state_, plan_, 0.420), RobotPhase::hold);
 }
 
 TEST_F(JumpSupervisorTest, TheCommitPointIsWhereTheBodyBeginsToRise) {
