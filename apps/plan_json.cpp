@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/landing_target.hpp"
+#include "planner/certified_plan.hpp"
 #include "planner/lift_to_3d.hpp"
 
 namespace hopscotch::apps {
@@ -96,6 +97,7 @@ Json summary(const core::JumpPlan& plan, const PlanContext& context) {
     json["certificate"].push_back(
         {{"name", entry.name}, {"margin", entry.margin}, {"at_s", entry.time}});
   }
+  json["certificate_holds"] = !planner::certificate_breach(plan.certificate);
   json["max_violation"] = plan.certificate.max_violation;
   json["dense_max_violation"] = plan.certificate.dense_max_violation;
   const core::CertificateEntry& binding = plan.certificate.binding();

@@ -17,22 +17,23 @@ using core::Refusal;
 /// A margin below zero by less is rounding of the solver.
 constexpr double kMarginTolerance = 1e-3;
 
-Refusal not_certified(const core::Certificate& certificate) {
+}  // namespace
+
+std::optional<Refusal> certificate_breach(const core::Certificate& certificate) {
   const core::CertificateEntry& worst = certificate.binding();
   char text[160];
-  std::snprintf(text, sizeof text,
-                "%s has margin %.3f at %.3f s; largest dense violation %.3f (allowed %.3f)",
-                std::string(worst.name).c_str(), worst.margin, worst.time,
-                certificate.dense_max_violation, kDenseViolationMax);
-  return {Reason::certificate_refused, text};
+  if (worst.margin < -kMarginTolerance) {
+    std::snprintf(text, sizeof text, "%s has margin %.3f at %.3f s",
+                  std::string(worst.name).c_str(), worst.margin, worst.time);
+  } else if (certificate.dense_max_violation > kDenseViolationMax) {
+    std::snprintf(text, sizeof text,
+                  "integrated at 1 ms, the motion misses its knots by %.4f, allowed is %.4f",
+                  certificate.dense_max_violation, kDenseViolationMax);
+  } else {
+    return std::nullopt;
+  }
+  return Refusal{Reason::certificate_refused, text};
 }
-
-bool is_certified(const core::Certificate& certificate) {
-  return certificate.binding().margin >= -kMarginTolerance &&
-         certificate.dense_max_violation <= kDenseViolationMax;
-}
-
-}  // namespace
 
 Refusal infeasible(const SolveOutcome& outcome, const PlanarTask& task, std::string_view limit) {
   char text[200];
@@ -53,19 +54,14 @@ std::optional<Refusal> certify_and_lift(const PlanarModel& model, const PlanarTa
   plan.certificate = certified.certificate;
   plan.certificate.max_violation = solved.outcome.violation;
   plan.peaks = certified.peaks;
-  if (!is_certified(plan.certificate)) {
-    return not_certified(plan.certificate);
-  }
+  if (auto breach = certificate_breach(plan.certificate)) return breach;
   if (!lift_to_3d(model, motion, plan.target, plan)) {
     return Refusal{Reason::out_of_reach, "a leg cannot reach so far to the side"};
   }
   if (!side_target(plan.target).is_straight()) {
     certify_legs(model.robot, model.config.friction, plan);
   }
-  if (!is_certified(plan.certificate)) {
-    return not_certified(plan.certificate);
-  }
-  return std::nullopt;
+  return certificate_breach(plan.certificate);
 }
 
 }  // namespace hopscotch::planner

@@ -13,6 +13,10 @@ namespace hopscotch::planner {
 /// Joint motion re-integrated with the held torques may miss by so much, see `certify`.
 inline constexpr double kDenseViolationMax = 1e-3;
 
+/// By what a certificate does not hold: its worst limit or, where all limits are kept, the
+/// dynamics. Nothing if it holds. @pre certificate.count > 0
+[[nodiscard]] std::optional<core::Refusal> certificate_breach(const core::Certificate& certificate);
+
 /// That no motion was found, after how much work.
 /// @param limit What stood in the way, in the words of the certificate; empty if unknown.
 [[nodiscard]] core::Refusal infeasible(const SolveOutcome& outcome, const PlanarTask& task,

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "planner/certified_plan.hpp"
 #include "tests/unit/planner/solved_jump.hpp"
 
 namespace hopscotch::planner {
@@ -96,6 +97,28 @@ TEST(Certificate, PeaksAgreeWithTheMargins) {
   EXPECT_NEAR(certified.peaks.torque_ratio, 1.0 - torque, 1e-12);
   EXPECT_GT(certified.peaks.normal_force,
             jump.model.dynamics.chain().total_mass() * model::kGravity);
+}
+
+/// Two limits, of which the second has less margin.
+core::Certificate with_margins(double first, double second, double dense_violation) {
+  core::Certificate certificate;
+  certificate.entries[0] = {.name = "knee power", .margin = first, .time = 0.4};
+  certificate.entries[1] = {.name = "friction", .margin = second, .time = 0.1};
+  certificate.count = 2;
+  certificate.dense_max_violation = dense_violation;
+  return certificate;
+}
+
+TEST(CertificateBreach, NamesTheWorstLimitElseTheDynamics) {
+  EXPECT_FALSE(certificate_breach(with_margins(0.1, 0.0, 0.0)));
+  EXPECT_FALSE(certificate_breach(with_margins(0.1, -9e-4, 9e-4))) << "rounding";
+  const auto limit = certificate_breach(with_margins(-0.1, -0.2, 0.2));
+  ASSERT_TRUE(limit);
+  EXPECT_EQ(limit->sentence, "friction has margin -0.200 at 0.100 s");
+  const auto dynamics = certificate_breach(with_margins(0.1, 0.2, 0.0012));
+  ASSERT_TRUE(dynamics);
+  EXPECT_EQ(dynamics->sentence,
+            "integrated at 1 ms, the motion misses its knots by 0.0012, allowed is 0.0010");
 }
 
 }  // namespace
