@@ -24,7 +24,9 @@ struct BenchSetup {
 [[nodiscard]] RunRequest level_ground_run(const BenchSetup& setup, Eyes eyes);
 
 /// Cold and warm solves over a grid of reachable targets; times are thread CPU time.
-[[nodiscard]] nlohmann::ordered_json bench_planner(const BenchSetup& setup);
+/// @param count  Of the targets, spread evenly.
+[[nodiscard]] nlohmann::ordered_json bench_planner(const BenchSetup& setup, int count);
+
 /// Which jumps are flown: so many of the targets from standing, spread evenly, or with a seed
 /// drawn at random from between them.
 struct FlightSample {

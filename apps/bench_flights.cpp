@@ -26,15 +26,6 @@ std::vector<BenchTarget> standing_targets() {
   return standing;
 }
 
-std::vector<BenchTarget> spread(const std::vector<BenchTarget>& targets, std::size_t count) {
-  std::vector<BenchTarget> chosen;
-  const std::size_t wanted = std::min(count, targets.size());
-  for (std::size_t i = 0; i < wanted; ++i) {
-    chosen.push_back(targets[i * targets.size() / wanted]);
-  }
-  return chosen;
-}
-
 /// Targets moved by up to half of the grid that they come from; level ones stay level.
 std::vector<BenchTarget> drawn(const std::vector<BenchTarget>& targets,
                                const FlightSample& sample) {

@@ -176,7 +176,7 @@ struct IterationSamples {
 
 }  // namespace
 
-nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
+nlohmann::ordered_json bench_planner(const BenchSetup& setup, int count) {
   planner::JumpPlanner planner(setup.config.planner, setup.robot,
                                shipped_jumps(setup.robot.name, setup.config.planner.steps));
   PlannerSamples cold;
@@ -185,7 +185,7 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
   IpoptSamples ipopt(setup);
   ReplanSamples replanned(setup);
   IterationSamples iterations(setup);
-  const std::vector<BenchTarget> targets = read_targets();
+  const std::vector<BenchTarget> targets = spread(read_targets(), static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < targets.size(); ++i) {
     planner::PlanRequest request = request_for(setup, targets[i]);
     request.id = i + 1;
@@ -206,7 +206,7 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
     }
     if (i % kIpoptEvery == 0) ipopt.solve(request);
   }
-  const double count = static_cast<double>(targets.size());
+  const double all = static_cast<double>(targets.size());
   return {{"n", targets.size()},
           {"solver", "chain"},
           {"cold_ms", percentile_group(cold.plan_ms, 1.0)},
@@ -219,10 +219,10 @@ nlohmann::ordered_json bench_planner(const BenchSetup& setup) {
           {"replan_iterations", percentile_group(replanned.iterations, 1.0)},
           {"iteration_ms", percentile_group(iterations.iteration_ms, 1.0)},
           {"ipopt_ms", percentile_group(ipopt.solve_ms, 1.0)},
-          {"success", cold.planned / count},  // certified plans
-          {"certified", cold.planned / count},
-          {"closed_form_success", closed_form.planned / count},
-          {"solved_from_guess", iterations.solved / count},
+          {"success", cold.planned / all},  // certified plans
+          {"certified", cold.planned / all},
+          {"closed_form_success", closed_form.planned / all},
+          {"solved_from_guess", iterations.solved / all},
           {"rungs", cold.rungs},
           {"dense_violation", percentile_group(cold.dense_violation, 1.0)},
           {"warm_success", warm.planned / std::max(1.0, static_cast<double>(warm.plan_ms.size()))},

@@ -11,6 +11,15 @@
 
 namespace hopscotch::apps {
 
+std::vector<BenchTarget> spread(const std::vector<BenchTarget>& targets, std::size_t count) {
+  std::vector<BenchTarget> chosen;
+  const std::size_t wanted = std::min(count, targets.size());
+  for (std::size_t i = 0; i < wanted; ++i) {
+    chosen.push_back(targets[i * targets.size() / wanted]);
+  }
+  return chosen;
+}
+
 planner::StepRequest step_of(const BenchTarget& target) {
   return {.distance = target.distance,
           .height = target.height,

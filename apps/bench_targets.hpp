@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "apps/bench.hpp"
@@ -18,6 +19,10 @@ struct BenchTarget {
 /// made it.
 /// @throws core::ConfigError naming file and line.
 [[nodiscard]] std::vector<BenchTarget> read_targets();
+
+/// So many of the targets, spread evenly; all if they are fewer.
+[[nodiscard]] std::vector<BenchTarget> spread(const std::vector<BenchTarget>& targets,
+                                              std::size_t count);
 
 /// The jump of a target over ground that changes height where `default_edge` says.
 [[nodiscard]] planner::StepRequest step_of(const BenchTarget& target);

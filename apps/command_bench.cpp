@@ -3,10 +3,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/bench.hpp"
 #include "apps/commands.hpp"
 #include "apps/installation.hpp"
+#include "apps/option_check.hpp"
+#include "core/config_reader.hpp"
 
 namespace hopscotch::apps {
 
@@ -16,6 +20,7 @@ struct BenchOptions {
   std::string what;
   std::filesystem::path qps;
   int jumps = 20;
+  int targets = 500;
   FlightSample fly;
   bool compare = false;
   bool json = false;
@@ -45,7 +50,7 @@ nlohmann::ordered_json measure(const BenchOptions& options) {
                          model::RobotParameters::load(robot_file("hector"))};
   if (options.what == "planner") {
     if (options.fly.flights > 0) return bench_flights(setup, options.fly);
-    return options.compare ? bench_formulations(setup) : bench_planner(setup);
+    return options.compare ? bench_formulations(setup) : bench_planner(setup, options.targets);
   }
   if (options.what == "mpc") return bench_mpc(setup, options.qps);
   if (options.what == "perception") return bench_perception(setup);
@@ -90,6 +95,58 @@ void print_people(const nlohmann::ordered_json& json) {
   }
 }
 
+/// Options that only one of the benchmarks has, each with its name.
+using OptionsOfOne = std::vector<std::pair<CLI::Option*, std::string>>;
+
+OptionsOfOne add_options_of_one(CLI::App& command, BenchOptions& options) {
+  CLI::Option* const qps = command.add_option("--qps", options.qps, "mpc: a file of recorded QPs");
+  CLI::Option* const jumps =
+      command.add_option("--jumps", options.jumps, "estimator: so many jumps")
+          ->check(whole_number(1, 100000))
+          ->capture_default_str();
+  CLI::Option* const fly = command.add_option("--fly", options.fly.flights,
+                                              "planner: plan and fly so many of its targets");
+  fly->check(whole_number(1, 1000));
+  CLI::Option* const seed =
+      command.add_option("--seed", options.fly.seed,
+                         "planner --fly: draw jumps from between the targets; 0: targets, evenly");
+  seed->check(whole_number())->needs(fly);
+  CLI::Option* const targets =
+      command.add_option("--targets", options.targets, "planner: so many of its targets, evenly")
+          ->check(whole_number(1, 500))
+          ->excludes(fly)
+          ->capture_default_str();
+  CLI::Option* const compare =
+      command.add_flag("--compare", options.compare,
+                       "planner: against other formulations of the same jumps, flown in MuJoCo");
+  compare->excludes(fly)->excludes(targets);
+  return {{qps, "mpc"},      {jumps, "estimator"}, {fly, "planner"},
+          {seed, "planner"}, {targets, "planner"}, {compare, "planner"}};
+}
+
+void refuse_options_of_others(const OptionsOfOne& given, const std::string& what) {
+  for (const auto& [option, bench] : given) {
+    if (option->count() > 0 && bench != what) {
+      throw core::ConfigError("bench: " + option->get_name() + " is an option of " + bench +
+                              ", not of " + what);
+    }
+  }
+}
+
+ExitStatus bench(const BenchOptions& options) {
+  nlohmann::ordered_json json;
+  json["schema"] = "hopscotch.bench/1";
+  json["bench"] = options.what;
+  json["machine"] = machine();
+  json.update(measure(options));
+  if (options.json) {
+    std::printf("%s\n", json.dump(2).c_str());
+  } else {
+    print_people(json);
+  }
+  return ExitStatus::ok;
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, Action& action) {
@@ -101,37 +158,11 @@ void add_bench_command(CLI::App& app, Action& action) {
       ->add_option("WHAT", options->what, "planner, mpc, perception, estimator, sim, tick or wire")
       ->required()
       ->check(CLI::IsMember({"planner", "mpc", "perception", "estimator", "sim", "tick", "wire"}));
-  command->add_option("--qps", options->qps, "mpc: a file of recorded QPs");
-  command->add_option("--jumps", options->jumps, "estimator: so many jumps")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  command->add_option("--fly", options->fly.flights, "planner: plan and fly so many of its targets")
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--seed", options->fly.seed,
-                      "planner --fly: draw jumps from between the targets; 0: targets, evenly");
-  command->add_flag("--compare", options->compare,
-                    "planner: against other formulations of the same jumps, flown in MuJoCo");
+  const OptionsOfOne of_one = add_options_of_one(*command, *options);
   command->add_flag("--json", options->json, "Print one JSON object");
-  command->callback([&action, options] {
-    action = [options] {
-      if (options->compare && options->what != "planner") {
-        throw core::ConfigError("bench: --compare is an option of planner");
-      }
-      if (options->fly.flights > 0 && options->what != "planner") {
-        throw core::ConfigError("bench: --fly is an option of planner");
-      }
-      nlohmann::ordered_json json;
-      json["schema"] = "hopscotch.bench/1";
-      json["bench"] = options->what;
-      json["machine"] = machine();
-      json.update(measure(*options));
-      if (options->json) {
-        std::printf("%s\n", json.dump(2).c_str());
-      } else {
-        print_people(json);
-      }
-      return ExitStatus::ok;
-    };
+  command->callback([&action, options, of_one] {
+    refuse_options_of_others(of_one, options->what);
+    action = [options] { return bench(*options); };
   });
 }
 

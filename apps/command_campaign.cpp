@@ -16,6 +16,7 @@
 #include "apps/command_campaign.hpp"
 #include "apps/commands.hpp"
 #include "apps/html.hpp"
+#include "apps/option_check.hpp"
 #include "apps/text_file.hpp"
 #include "core/config_reader.hpp"
 
@@ -152,13 +153,14 @@ void add_campaign_command(CLI::App& app, Action& action) {
   command->add_option("SPEC", options->spec, "Campaign file (YAML)")->required();
   command->add_option("--out", options->out, "Folder of the campaign")->required();
   command->add_option("--jobs", options->jobs, "Worker processes")
-      ->check(CLI::Range(1, 1024))
+      ->check(whole_number(1, 1024))
       ->capture_default_str();
   command->add_option("--engine", options->engine, "What runs the trials")
       ->check(CLI::IsMember({"local", "slurm"}))
       ->capture_default_str();
   command->add_flag("--resume", options->resume, "Go on with the campaign in the folder");
-  command->add_option("--trial", options->trial, "Run this one again, alone, with its log");
+  command->add_option("--trial", options->trial, "Run this one again, alone, with its log")
+      ->check(whole_number(0, std::numeric_limits<std::int64_t>::max()));
   command->add_option("--compare", options->compare,
                       "Folder of a campaign on the same draws: paired differences");
   command->add_option("--merge", options->merge,

@@ -12,6 +12,7 @@
 #include "apps/command_gate.hpp"
 #include "apps/live_run.hpp"
 #include "apps/operator_client.hpp"
+#include "apps/option_check.hpp"
 #include "apps/stopwatch.hpp"
 #include "core/config_reader.hpp"
 
@@ -103,7 +104,7 @@ std::string in_json(const std::optional<msgs::Ack>& ack, const std::string& run,
 void add_ask_options(CLI::App& command, AskOptions& options) {
   command.add_option("--run", options.run, "Id of the run, when several are on");
   command.add_option("--patience", options.patience, "How long to wait for the answer [s]")
-      ->check(CLI::Range(0.1, 3600.0))
+      ->check(finite_number(0.1, 3600.0))
       ->capture_default_str();
   command.add_flag("--json", options.json, "Print the answer as JSON on standard output");
 }

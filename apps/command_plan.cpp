@@ -10,6 +10,7 @@
 #include "apps/flight_trial.hpp"
 #include "apps/html.hpp"
 #include "apps/installation.hpp"
+#include "apps/option_check.hpp"
 #include "apps/plan_json.hpp"
 #include "apps/program_config.hpp"
 #include "apps/shipped_jumps.hpp"
@@ -17,6 +18,7 @@
 #include "apps/text_file.hpp"
 #include "apps/video.hpp"
 #include "core/config_reader.hpp"
+#include "planner/certified_plan.hpp"
 #include "planner/jump_planner.hpp"
 #include "planner/nearest_target.hpp"
 #include "planner/step_target.hpp"
@@ -30,7 +32,7 @@ struct PlanOptions {
   double friction = core::kNaN;
   std::string robot = "hector";
   std::string model = "variable";
-  std::string solver = "chain";
+  std::string solver;  ///< Empty: chain, or ipopt where only that solves the model.
   int repeat = 1;
   bool cold = false;
   bool json = false;
@@ -55,6 +57,10 @@ void say_plan(const core::JumpPlan& plan, const PlanContext& context) {
     const core::CertificateEntry& entry = plan.certificate.entries[i];
     std::printf("  margin %6.3f  %-28s at %.3f s\n", entry.margin, std::string(entry.name).c_str(),
                 entry.time);
+  }
+  if (const auto breach = planner::certificate_breach(plan.certificate)) {
+    std::printf("the certificate does not hold: %s. The robot cannot fly this plan\n",
+                breach->sentence.c_str());
   }
 }
 
@@ -156,12 +162,13 @@ FlownJump fly(const FlightTrial& trial, const std::filesystem::path& video) {
 
 ExitStatus plan(PlanOptions options) {
   planner::StepRequest& step = options.step;
-  if (!std::isfinite(step.distance + step.height + step.lateral + step.yaw)) {
-    throw core::ConfigError(
-        "plan: --distance, --height, --lateral and --yaw must be finite numbers");
-  }
-  if (options.model != "variable") {
-    options.solver = "ipopt";
+  const bool own = options.model == "variable";
+  if (options.solver.empty()) options.solver = own ? "chain" : "ipopt";
+  if (!own) {
+    if (options.solver != "ipopt") {
+      throw core::ConfigError("plan: --solver " + options.solver +
+                              " solves --model variable only; the others need ipopt");
+    }
     if (step.lateral != 0.0 || step.yaw != 0.0) {
       throw core::ConfigError("plan: --model " + options.model +
                               " plans straight jumps only; --lateral and --yaw must be 0");
@@ -197,24 +204,33 @@ void add_plan_command(CLI::App& app, Action& action) {
       app.add_subcommand("plan", "One jump from standing: trajectory, certificate, time");
   command->footer("Example: hopscotch plan --distance 0.40 --height 0.10 --json");
   const auto options = std::make_shared<PlanOptions>();  // shared with the action below
-  command->add_option("--distance", options->step.distance, "Ahead, sole to sole [m]")->required();
-  command->add_option("--height", options->step.height, "Of the landing place [m]");
-  command->add_option("--edge", options->step.edge, "Where the ground changes height [m]");
-  command->add_option("--lateral", options->step.lateral, "To the left [m]");
-  command->add_option("--yaw", options->step.yaw, "Of the landing soles [rad]");
+  command->add_option("--distance", options->step.distance, "Ahead, sole to sole [m]")
+      ->required()
+      ->check(finite_number());
+  command->add_option("--height", options->step.height, "Of the landing place [m]")
+      ->check(finite_number());
+  command
+      ->add_option("--edge", options->step.edge,
+                   "Where the ground changes height [m]; default 0.12 for a height below 0, "
+                   "distance - 0.12 above")
+      ->check(finite_number());
+  command->add_option("--lateral", options->step.lateral, "To the left [m]")
+      ->check(finite_number());
+  command->add_option("--yaw", options->step.yaw, "Of the landing soles [rad]")
+      ->check(finite_number());
   command->add_option("--robot", options->robot, "Robot file")->capture_default_str();
   command
       ->add_option("--friction", options->friction, "Of the ground, instead of the configured one")
-      ->check(CLI::Range(0.05, 1.2));
+      ->check(finite_number(0.05, 1.2));
   command
       ->add_option("--model", options->model,
                    "Formulation; all but the first are for comparison, and by Ipopt")
       ->check(CLI::IsMember({"variable", "paper", "full", "kinodynamic", "srbd"}))
       ->capture_default_str();
-  command->add_option("--solver", options->solver, "Solver")
-      ->check(CLI::IsMember({"chain", "ipopt"}))
-      ->capture_default_str();
-  command->add_option("--repeat", options->repeat, "Solve so often")->check(CLI::Range(1, 10000));
+  command
+      ->add_option("--solver", options->solver, "default chain; ipopt for models to compare with")
+      ->check(CLI::IsMember({"chain", "ipopt"}));
+  command->add_option("--repeat", options->repeat, "Solve so often")->check(whole_number(1, 10000));
   command->add_flag("--cold", options->cold,
                     "Each solve as the first: from the library or, without a jump close by, from "
                     "the closed form");

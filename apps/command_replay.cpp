@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/command_depth.hpp"
 #include "apps/commands.hpp"
 #include "apps/installation.hpp"
 #include "apps/replay.hpp"
@@ -19,8 +20,7 @@ struct ReplayOptions {
   std::filesystem::path config = config_directory() / "hopscotch.yaml";
   std::filesystem::path out;
   std::string robot = "hector";
-  std::vector<double> intrinsics;
-  double depth_scale = 0.001;
+  DepthOptions depth;
   bool json = false;
 };
 
@@ -82,14 +82,10 @@ ExitStatus replay(const ReplayOptions& options) {
     lines += line + "\n";
     draw(options.out, number++, look);
   };
-  DepthScaling scaling{.intrinsics = {}, .metres_per_unit = options.depth_scale};
-  if (!options.intrinsics.empty()) {
-    const std::vector<double>& lens = options.intrinsics;
-    scaling.intrinsics = {lens[0], lens[1], lens[2], lens[3]};
-  }
-  const ReplaySummary summary = std::filesystem::is_directory(options.log)
-                                    ? replay_folder(options.log, scaling, config, robot, observe)
-                                    : replay_log(options.log, config, robot, observe);
+  const ReplaySummary summary =
+      std::filesystem::is_directory(options.log)
+          ? replay_folder(options.log, options.depth.scaling(), config, robot, observe)
+          : replay_log(options.log, config, robot, observe);
   if (!options.out.empty()) write_file_atomically(options.out / "terrain.jsonl", lines);
   say(people, summary);
   return summary.differing() == 0 ? ExitStatus::ok : ExitStatus::answer_is_no;
@@ -113,12 +109,7 @@ void add_replay_command(CLI::App& app, Action& action) {
   command->add_option("--out", options->out, "Write pictures and terrain.jsonl to this folder");
   command->add_option("--robot", options->robot, "Robot that recorded the log")
       ->capture_default_str();
-  command->add_option("--intrinsics", options->intrinsics, "Folder: FX,FY,CX,CY [pixel]")
-      ->delimiter(',')
-      ->expected(4);
-  command->add_option("--depth-scale", options->depth_scale, "Folder: metres per unit")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_depth_options(*command, options->depth);
   command->add_option("--config", options->config, "Tuning")->capture_default_str();
   command->add_flag("--json", options->json, "Print one JSON object for each look");
   command->callback([&action, options] { action = [options] { return replay(*options); }; });

@@ -1,4 +1,5 @@
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -9,10 +10,12 @@
 
 #include "apps/command_gate.hpp"
 #include "apps/commands.hpp"
+#include "apps/html.hpp"
 #include "apps/installation.hpp"
 #include "apps/key_frames.hpp"
 #include "apps/live_run.hpp"
 #include "apps/lockstep_run.hpp"
+#include "apps/option_check.hpp"
 #include "apps/pacer.hpp"
 #include "apps/report.hpp"
 #include "apps/run_attendant.hpp"
@@ -152,9 +155,11 @@ RunResult simulate(const RunOptions& options, const RunRequest& request, RunReco
 }
 
 void say_jump(const JumpResult& jump, std::FILE* people) {
-  std::fprintf(people, "  jump %d: %.2f m ahead, %+.2f m -> %s, landed at %.3f m%s%s\n", jump.index,
+  const bool stands = std::isfinite(jump.landing.distance);
+  std::fprintf(people, "  jump %d: %.2f m ahead, %+.2f m -> %s%s%s%s\n", jump.index,
                jump.target.distance, jump.target.height,
-               std::string(jump_outcome_name(jump.outcome)).c_str(), jump.landing.distance,
+               std::string(jump_outcome_name(jump.outcome)).c_str(),
+               stands ? (" at " + fixed(jump.landing.distance, 3) + " m").c_str() : "",
                jump.reason.empty() ? "" : ": ", jump.reason.c_str());
 }
 
@@ -225,9 +230,10 @@ void add_run_command(CLI::App& app, Action& action) {
   const auto options = std::make_shared<RunOptions>();  // shared with the action below
   command->add_option("SCENARIO", options->scenario, "Scenario file (YAML)")->required();
   command->add_option("--seed", options->seed, "Of noise and start variation")
+      ->check(whole_number())
       ->capture_default_str();
   command->add_option("--jumps", options->jumps, "Stop after so many jumps")
-      ->check(CLI::Range(1, 100000));
+      ->check(whole_number(1, 100000));
   command->add_option("--perception", options->perception, "What the robot sees the terrain with")
       ->check(CLI::IsMember({"camera", "truth"}))
       ->capture_default_str();
@@ -241,7 +247,7 @@ void add_run_command(CLI::App& app, Action& action) {
   command->add_option("--out", options->out, "Run folder [runs/<scenario>-<seed>]");
   command->add_option("--config", options->config, "Tuning")->capture_default_str();
   command->add_option("--pace", options->pace, "Times real time; without it as fast as it goes")
-      ->check(CLI::Range(0.01, 100.0));
+      ->check(finite_number(0.01, 100.0));
   command->add_flag(
       "--threads", options->threads,
       "Stages on threads of their own, paced by the clock: repeats no more to the bit");
@@ -253,7 +259,7 @@ void add_run_command(CLI::App& app, Action& action) {
   command->add_flag("--serve", options->serve,
                     "Show it in a browser on this machine, in real time");
   command->add_option("--port", options->port, "Of the page; 0: any that is free")
-      ->check(CLI::Range(0, 65535))
+      ->check(whole_number(0, 65535))
       ->capture_default_str();
   command->add_flag("--lcm", options->lcm,
                     "Live LCM channels and commands; --pace, --view and --serve have them too");

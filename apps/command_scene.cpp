@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/command_depth.hpp"
 #include "apps/commands.hpp"
 #include "apps/installation.hpp"
+#include "apps/option_check.hpp"
 #include "apps/scene_pictures.hpp"
 #include "apps/scene_terrain.hpp"
 #include "apps/text_file.hpp"
@@ -23,9 +25,8 @@ struct SceneOptions {
   std::filesystem::path file;
   std::filesystem::path config = config_directory() / "hopscotch.yaml";
   std::filesystem::path out;
-  std::vector<double> intrinsics;
+  DepthOptions depth;
   std::vector<double> origin;
-  double depth_scale = 0.001;
   std::optional<double> camera_height;
   std::optional<double> camera_pitch;
   std::string up;
@@ -44,11 +45,7 @@ const std::map<std::string, Eigen::Vector3d>& axes() {
 SceneRequest request_of(const SceneOptions& options) {
   SceneRequest request;
   request.file = options.file;
-  request.scaling.metres_per_unit = options.depth_scale;
-  if (!options.intrinsics.empty()) {
-    const std::vector<double>& lens = options.intrinsics;
-    request.scaling.intrinsics = {lens[0], lens[1], lens[2], lens[3]};
-  }
+  request.scaling = options.depth.scaling();
   perception::GroundHints& hints = request.hints;
   if (!options.up.empty()) hints.up = axes().at(options.up);
   if (!options.forward.empty()) hints.forward = axes().at(options.forward);
@@ -77,8 +74,10 @@ void say(const SceneOptions& options, const SceneTerrain& scene) {
   const core::OneStepTerrain& features = report.survey.features;
   for (std::size_t i = 0; i < features.edge_count; ++i) {
     const core::TerrainEdge& edge = features.edges[i];
-    std::printf("  edge %.3f m ahead (+-%.0f mm): %s, step %+.3f m\n", edge.x, 1e3 * edge.sigma,
-                kKinds[static_cast<std::size_t>(edge.kind)], edge.step);
+    std::printf("  edge %.3f m ahead (+-%.0f mm): %s", edge.x, 1e3 * edge.sigma,
+                kKinds[static_cast<std::size_t>(edge.kind)]);
+    std::isfinite(edge.step) ? std::printf(", step %+.3f m\n", edge.step)
+                             : std::printf(", nothing is seen behind it\n");
   }
   for (const ReportedPlane& plane : report.planes) {
     std::printf("  plane at %+.3f m, slope %.1f deg, %d points\n", plane.height,
@@ -128,11 +127,11 @@ void add_pose_options(CLI::App& command, SceneOptions& options) {
   for (const auto& [name, axis] : axes()) names.push_back(name);
   command
       .add_option("--camera-height", options.camera_height, "Of the camera above the ground [m]")
-      ->check(CLI::Range(0.05, 5.0));
+      ->check(finite_number(0.05, 5.0));
   command
       .add_option("--camera-pitch", options.camera_pitch,
                   "Optical axis below the horizon; positive looks down [rad]")
-      ->check(CLI::Range(-1.6, 1.6));
+      ->check(finite_number(-1.6, 1.6));
   command.add_option("--up", options.up, "Axis of the recording that is up")
       ->check(CLI::IsMember(names));
   command.add_option("--forward", options.forward, "Axis of the recording along the jump")
@@ -140,6 +139,7 @@ void add_pose_options(CLI::App& command, SceneOptions& options) {
   command
       .add_option("--origin", options.origin,
                   "X,Y: where the robot stands, ahead and left of the point below the sensor [m]")
+      ->check(finite_number())
       ->delimiter(',')
       ->expected(2);
 }
@@ -155,12 +155,7 @@ void add_scene_command(CLI::App& app, Action& action) {
   const auto options = std::make_shared<SceneOptions>();  // shared with the action below
   command->add_option("DEPTH_OR_CLOUD", options->file, "16-bit PNG, PGM or TIFF; PCD or PLY")
       ->required();
-  command->add_option("--intrinsics", options->intrinsics, "FX,FY,CX,CY of the camera [pixel]")
-      ->delimiter(',')
-      ->expected(4);
-  command->add_option("--depth-scale", options->depth_scale, "Metres per unit of the image")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_depth_options(*command, options->depth);
   add_pose_options(*command, *options);
   command->add_option("--config", options->config, "Tuning")->capture_default_str();
   command->add_option("--out", options->out, "Write pictures and terrain.json to this folder");

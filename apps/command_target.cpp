@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "apps/command_operator.hpp"
+#include "apps/option_check.hpp"
 #include "core/config_reader.hpp"
 
 namespace hopscotch::apps {
@@ -15,8 +16,7 @@ struct TargetOptions {
 };
 
 ExitStatus target(const TargetOptions& options) {
-  const bool given = std::isfinite(options.target.distance);
-  if (given == options.clear) {
+  if (!options.clear && std::isnan(options.target.distance)) {
     throw core::ConfigError("target: give either DISTANCE_M or --clear");
   }
   core::OperatorCommand command;
@@ -41,11 +41,20 @@ void add_target_command(CLI::App& app, Action& action) {
       "         hopscotch target 0.3 --yaw 0.1   with a turn to the left\n"
       "         hopscotch target --clear         drop it again");
   const auto options = std::make_shared<TargetOptions>();  // shared with the action below
-  command->add_option("DISTANCE_M", options->target.distance, "Along the heading, sole to sole");
-  command->add_option("HEIGHT_M", options->target.height, "Expected height; without it the map's");
-  command->add_option("--lateral", options->target.lateral, "To the left [m]");
-  command->add_option("--yaw", options->target.yaw, "Turn to the left [rad]");
-  command->add_flag("--clear", options->clear, "Drop an earlier target that is still waiting");
+  CLI::Option* const clear =
+      command->add_flag("--clear", options->clear, "Drop an earlier target that is still waiting");
+  command->add_option("DISTANCE_M", options->target.distance, "Along the heading, sole to sole")
+      ->check(finite_number())
+      ->excludes(clear);
+  command->add_option("HEIGHT_M", options->target.height, "Expected height; without it the map's")
+      ->check(finite_number())
+      ->excludes(clear);
+  command->add_option("--lateral", options->target.lateral, "To the left [m]")
+      ->check(finite_number())
+      ->excludes(clear);
+  command->add_option("--yaw", options->target.yaw, "Turn to the left [rad]")
+      ->check(finite_number())
+      ->excludes(clear);
   add_ask_options(*command, options->ask);
   command->callback([&action, options] { action = [options] { return target(*options); }; });
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/commands.hpp"
+#include "apps/option_check.hpp"
 #include "apps/run_folder.hpp"
 #include "apps/run_result.hpp"
 #include "apps/text_file.hpp"
@@ -69,7 +70,7 @@ void add_view_command(CLI::App& app, Action& action) {
   const auto options = std::make_shared<ViewOptions>();  // shared with the action below
   command->add_option("RUN_DIR", options->folder, "Run folder")->required();
   command->add_option("--port", options->port, "Of the page; 0: any that is free")
-      ->check(CLI::Range(0, 65535))
+      ->check(whole_number(0, 65535))
       ->capture_default_str();
   command->callback([&action, options] { action = [options] { return view(*options); }; });
 }
