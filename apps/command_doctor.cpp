@@ -17,6 +17,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/doctor_can.hpp"
+#include "apps/doctor_packages.hpp"
 #include "apps/finding.hpp"
 #include "apps/installation.hpp"
 #include "apps/program_config.hpp"
@@ -153,6 +154,8 @@ std::vector<Finding> examine() {
   std::vector<Finding> findings{check_configuration(), check_rendering(), check_ffmpeg(),
                                 check_display(),       check_real_time(), check_real_time_kernel(),
                                 check_memory_lock(),   check_can_kernel()};
+  const std::vector<Finding> packages = check_packages();
+  findings.insert(findings.begin() + 1, packages.begin(), packages.end());
   const std::vector<Finding> buses = check_can(config_directory() / "robot_bus.yaml");
   findings.insert(findings.end(), buses.begin(), buses.end());
   findings.push_back(check_multicast());
