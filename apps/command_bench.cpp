@@ -124,12 +124,10 @@ OptionsOfOne add_options_of_one(CLI::App& command, BenchOptions& options) {
           {seed, "planner"}, {targets, "planner"}, {compare, "planner"}};
 }
 
-void refuse_options_of_others(const OptionsOfOne& given, const std::string& what) {
-  for (const auto& [option, bench] : given) {
-    if (option->count() > 0 && bench != what) {
-      throw core::ConfigError("bench: " + option->get_name() + " is an option of " + bench +
-                              ", not of " + what);
-    }
+void refuse_options_of_others(const OptionsOfOne& known, const std::string& what) {
+  for (const auto& [option, bench] : known) {
+    if (option->count() == 0 || bench == what) continue;
+    throw core::ConfigError(option->get_name() + ": is an option of `bench " + bench + "` alone");
   }
 }
 

@@ -28,8 +28,6 @@
 
 namespace hopscotch::apps {
 
-namespace fs = std::filesystem;
-
 namespace {
 
 Finding check_configuration() {
