@@ -17,7 +17,7 @@ using core::RobotPhase;
 
 constexpr double kGravity = 9.81;        // [m/s^2]
 constexpr double kPushInFlight = 1.5;    // momentum out of nowhere, in the air [N·s]
-constexpr double kPushOnGround = 6.0;    // the same on the ground, where impacts blur it [N·s]
+constexpr double kPushOnGround = 6.0;    // the same on the ground, beyond what impacts blur [N·s]
 constexpr double kPushWindow = 0.15;     // [s]
 constexpr double kSlip = 0.03;           // path of a loaded sole [m]
 constexpr double kSlipSpeed = 0.15;      // [m/s]
@@ -61,20 +61,58 @@ bool in_contact(const Sample& sample) {
   return sample.load[0] > kTouch || sample.load[1] > kTouch;
 }
 
-/// Momentum gained from sample `a` to `b` that neither weight nor ground explains [N·s].
-Eigen::Vector3d unexplained(const Evidence& evidence, std::size_t a, std::size_t b) {
-  const double mass = evidence.robot.total_mass();
-  Eigen::Vector3d rest = mass * (evidence.samples[b].v_WG - evidence.samples[a].v_WG);
+/// Momentum that neither weight nor ground explains.
+struct Unexplained {
+  Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  ///< [N·s]
+  /// Of it, what the ground may have done unseen: between two records its force is known no better
+  /// than it changed [N·s].
+  Eigen::Vector3d doubt = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] double certain() const {
+    return (momentum.cwiseAbs() - doubt).cwiseMax(0.0).norm();
+  }
+};
+
+/// From sample `a` to `b`.
+Unexplained unexplained(const Evidence& evidence, std::size_t a, std::size_t b) {
+  Unexplained rest;
+  rest.momentum = evidence.mass * (evidence.samples[b].v_WG - evidence.samples[a].v_WG);
   for (std::size_t i = a; i < b; ++i) {
     const Sample& from = evidence.samples[i];
     const Sample& to = evidence.samples[i + 1];
     const double dt = to.time - from.time;
-    for (std::size_t leg = 0; leg < core::kLegs; ++leg) {
-      rest -= 0.5 * dt * (from.ground[leg].force + to.ground[leg].force);
-    }
-    rest.z() += mass * kGravity * dt;
+    const Eigen::Vector3d before = from.ground[0].force + from.ground[1].force;
+    const Eigen::Vector3d after = to.ground[0].force + to.ground[1].force;
+    rest.momentum -= 0.5 * dt * (before + after);
+    rest.doubt += 0.5 * dt * (after - before).cwiseAbs();
+    rest.momentum.z() += evidence.mass * kGravity * dt;
   }
   return rest;
+}
+
+/// The whole of a push that shows between the samples `a` and `b`: from where it shows best until,
+/// within one more window, there is no more of it.
+Clue whole_push(const Evidence& evidence, std::size_t a, std::size_t b, double limit) {
+  const std::vector<Sample>& samples = evidence.samples;
+  const auto certain = [&](std::size_t from, std::size_t to) {
+    return unexplained(evidence, from, to).certain();
+  };
+  std::size_t begin = a;
+  for (std::size_t i = a + 1; i < b; ++i) {
+    if (certain(i, b) >= certain(begin, b)) begin = i;
+  }
+  std::size_t end = b;
+  for (std::size_t i = b + 1; i < samples.size(); ++i) {
+    if (samples[i].time - samples[b].time > kPushWindow) break;
+    if (certain(begin, i) > certain(begin, end)) end = i;
+  }
+  const Eigen::Vector3d impulse = unexplained(evidence, begin, end).momentum;
+  return measured(
+      found(Cause::push, samples[begin],
+            text("something pushed the robot by (%.1f, %.1f, %.1f) N·s within %.2f s: "
+                 "neither weight nor ground explains it",
+                 impulse.x(), impulse.y(), impulse.z(), samples[end].time - samples[begin].time)),
+      impulse.norm(), limit, "Ns");
 }
 
 std::optional<Clue> find_push(const Evidence& evidence) {
@@ -86,16 +124,12 @@ std::optional<Clue> find_push(const Evidence& evidence) {
     if (core::is_limp(sample.status.phase)) break;
     while (sample.time - evidence.samples[begin].time > kPushWindow) ++begin;
     if (in_contact(sample) || in_contact(evidence.samples[i - 1])) in_air_since = i;
-    const std::size_t from = std::max(begin, in_air_since);
-    const double limit = from > begin || i > in_air_since + 1 ? kPushInFlight : kPushOnGround;
-    const std::size_t start = limit == kPushInFlight ? from : begin;
-    const Eigen::Vector3d impulse = unexplained(evidence, start, i);
-    if (impulse.norm() > limit) {
-      return measured(found(Cause::push, sample,
-                            text("something pushed the robot by (%.1f, %.1f, %.1f) N·s within "
-                                 "%.2f s: neither weight nor ground explains it",
-                                 impulse.x(), impulse.y(), impulse.z(), kPushWindow)),
-                      impulse.norm(), limit, "Ns");
+    const std::size_t in_air = std::max(begin, in_air_since);
+    if (unexplained(evidence, in_air, i).certain() > kPushInFlight) {
+      return whole_push(evidence, in_air, i, kPushInFlight);
+    }
+    if (unexplained(evidence, begin, i).certain() > kPushOnGround) {
+      return whole_push(evidence, begin, i, kPushOnGround);
     }
   }
   return std::nullopt;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/config_reader.hpp"
 #include "model/kinematics.hpp"
 #include "model/rigid_body.hpp"
 #include "msgs/run_log.hpp"
@@ -76,10 +77,46 @@ const Value* nearest(const std::vector<Value>& values, core::Stamp stamp, StampO
   return stamp_of(*after).since(stamp) < stamp.since(stamp_of(*before)) ? &*after : &*before;
 }
 
+/// From the world as the controller took it to lie to the plant's. Place and heading drift, slowly,
+/// and what the robot sees and plans drifts with them: that does no harm.
+Eigen::Isometry3d drift(const core::RobotState& truth, const core::RobotState& believed) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  if (!believed.p_WB.allFinite()) return X;
+  const double yaw =
+      model::rpy_from_rotation(truth.R_WB).z() - model::rpy_from_rotation(believed.R_WB).z();
+  X.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  X.translation() = truth.p_WB - X.linear() * believed.p_WB;
+  return X;
+}
+
+void move(const Eigen::Isometry3d& X, core::RobotState& state) {
+  state.p_WB = X * state.p_WB;
+  state.R_WB = X.linear() * state.R_WB;
+  state.v_WB = X.linear() * state.v_WB;
+  state.w_WB = X.linear() * state.w_WB;
+}
+
+void move(const Eigen::Isometry3d& X, core::JumpPlan& plan) {
+  const double yaw = model::rpy_from_rotation(X.linear()).z();
+  plan.target.p_WS = X * plan.target.p_WS;
+  plan.target.heading += yaw;
+  for (Eigen::Isometry3d& X_WF : plan.target.X_WF) X_WF = X * X_WF;
+  for (std::size_t i = 0; i < plan.knot_count; ++i) {
+    core::JumpKnot& knot = plan.knots[i];
+    knot.rpy.z() += yaw;
+    for (Eigen::Vector3d* p : {&knot.p_WB, &knot.p_WG}) *p = X * *p;
+    for (Eigen::Vector3d* v : {&knot.v_WB, &knot.w_WB, &knot.v_WG}) *v = X.linear() * *v;
+    for (core::Wrench& wrench : knot.wrenches) {
+      wrench.force = X.linear() * wrench.force;
+      wrench.moment = X.linear() * wrench.moment;
+    }
+  }
+}
+
 Sample sample_of(const RawRun& raw, const msgs::Status& status,
                  const model::RobotParameters& robot) {
   Sample sample;
-  sample.time = status.control.stamp.since(raw.status.front().control.stamp);
+  sample.time = status.control.stamp.seconds();
   sample.status = status.control;
   sample.jump = status.jump;
   sample.deadline_misses = status.deadline_misses;
@@ -104,12 +141,20 @@ Sample sample_of(const RawRun& raw, const msgs::Status& status,
   return sample;
 }
 
+/// Of the plant against `robot.yaml`.
+double mass_scale(const RunFolder& folder) {
+  const auto scenario = core::ConfigReader::from_file(folder.config()).section("scenario");
+  const auto plant = scenario.section_if("plant");
+  return plant ? plant->number_or("mass_scale", 1.0) : 1.0;
+}
+
 }  // namespace
 
 Evidence collect_evidence(const RunFolder& folder) {
   Evidence evidence;
   evidence.result = read_run_result(folder.result());
   evidence.robot = model::RobotParameters::load(folder.robot());
+  evidence.mass = mass_scale(folder) * evidence.robot.total_mass();
   const RawRun raw = read(folder);
   evidence.has_truth = !raw.truth.empty();
   evidence.choice = raw.choice;
@@ -119,6 +164,10 @@ Evidence collect_evidence(const RunFolder& folder) {
   }
   const auto plan = raw.plans.find(raw.status[last_of_plan(raw.status)].control.plan_id);
   if (plan != raw.plans.end()) evidence.plan = plan->second;
+  const Sample& start = evidence.samples.front();
+  const Eigen::Isometry3d X = drift(start.truth, start.believed);
+  for (Sample& sample : evidence.samples) move(X, sample.believed);
+  if (evidence.plan) move(X, *evidence.plan);
   return evidence;
 }
 

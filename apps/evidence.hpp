@@ -18,7 +18,7 @@ namespace hopscotch::apps {
 
 /// One moment of a log, as the detectors look at it.
 struct Sample {
-  double time = core::kNaN;   ///< Since the start of the log [s].
+  double time = core::kNaN;   ///< Since the start of the run [s].
   core::RobotState truth;     ///< Of the plant; the controller's own state where there is no plant.
   core::RobotState believed;  ///< By the controller.
   core::ContactWrenches ground{};                                   ///< NaN without a plant.
@@ -32,10 +32,13 @@ struct Sample {
   std::array<double, core::kLegs> load{};  ///< Upward force on each foot [N].
 };
 
-/// The last jump of a run, or its last seconds when it was not jumping.
+/// The last jump of a run, or its last seconds when it was not jumping. What the controller
+/// believed and planned stands in the plant's world, as if it had known its place when these
+/// seconds began.
 struct Evidence {
   RunResult result;
   model::RobotParameters robot;
+  double mass = core::kNaN;  ///< Of the plant, which may be scaled [kg].
   bool has_truth = false;
   std::vector<Sample> samples;               ///< In order of time; of the last attempt only.
   std::optional<core::JumpPlan> plan;        ///< Of that jump.

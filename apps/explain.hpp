@@ -43,7 +43,7 @@ enum class Cause : std::uint8_t {
 /// One piece of evidence.
 struct Clue {
   Cause cause = Cause::unknown;
-  double time = core::kNaN;   ///< Since the start of the log [s].
+  double time = core::kNaN;   ///< Since the start of the run [s].
   int jump = 0;               ///< From 1; 0 before the first.
   double value = core::kNaN;  ///< Measured, in `unit`.
   double limit = core::kNaN;  ///< That it broke, in `unit`.

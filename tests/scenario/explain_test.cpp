@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 
+#include "apps/evidence.hpp"
 #include "apps/explain.hpp"
 #include "apps/run_folder.hpp"
 #include "tests/scenario/program.hpp"
@@ -13,23 +17,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Of a test with parameters.
+std::string slashless(std::string name) {
+  std::replace(name.begin(), name.end(), '/', '-');
+  return name;
+}
+
 /// Runs with a made-up mishap, and what `explain` makes of them.
 class Explain : public ::testing::Test {
  protected:
   Explain()
       : folder_(fs::path(testing::TempDir()) /
-                (std::string("explain-") +
-                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+                ("explain-" +
+                 slashless(::testing::UnitTest::GetInstance()->current_test_info()->name()))) {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
   ~Explain() override { fs::remove_all(folder_); }
 
-  RunFolder run(const std::string& scenario) const {
+  RunFolder run(const std::string& scenario, const std::string& state = "truth") const {
     std::ofstream(folder_ / "scenario.yaml") << scenario;
     const fs::path out = folder_ / "out";
-    call("run " + (folder_ / "scenario.yaml").string() +
-         " --state truth --perception truth --no-pictures --out " + out.string());
+    call("run " + (folder_ / "scenario.yaml").string() + " --state " + state +
+         " --perception truth --no-pictures --out " + out.string());
     return {out};
   }
 
@@ -58,6 +68,97 @@ TEST_F(Explain, AFallAfterAPushNamesThePushWithItsTime) {
   const Answer answer = call("explain " + folder.path.string() + " --json 2>/dev/null");
   EXPECT_EQ(answer.status, 0);
   EXPECT_NE(answer.output.find("\"code\": \"push\""), std::string::npos) << answer.output;
+}
+
+struct PushCase {
+  const char* name;
+  const char* phase;
+  double impulse;  ///< Along x [N·s].
+};
+
+class ExplainedPush : public Explain, public ::testing::WithParamInterface<PushCase> {};
+
+TEST_P(ExplainedPush, IsFoundWholeWhereverTheRobotIs) {
+  const RunFolder folder =
+      run("name: pushed\n"
+          "slabs:\n  - {x_m: [-1.0, 4.0]}\n"
+          "goal: {jumps: 3}\n"
+          "surprises:\n"
+          "  - {push: {phase: " +
+          std::string(GetParam().phase) + ", after_s: 0.1, duration_s: 0.1, impulse_Ns: [" +
+          std::to_string(GetParam().impulse) + ", 0.0, 0.0]}}\n");
+  const Explanation explanation = explain_run(folder);
+  EXPECT_EQ(explanation.result.outcome, RunOutcome::fell);
+  EXPECT_EQ(explanation.first.cause, Cause::push) << to_text(explanation);
+  constexpr double kBlur = 3.0;  // a record every 20 ms says so much of a landing's forces [N·s]
+  EXPECT_NEAR(explanation.first.value, std::abs(GetParam().impulse), kBlur) << to_text(explanation);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ExplainedPush,
+                         ::testing::Values(PushCase{"takeoff_ahead", "takeoff", 14.0},
+                                           PushCase{"takeoff_hard", "takeoff", 25.0},
+                                           PushCase{"takeoff_back", "takeoff", -20.0},
+                                           PushCase{"flight_back", "flight", -14.0},
+                                           PushCase{"landing_hard", "landing", 25.0},
+                                           PushCase{"landing_back", "landing", -20.0}),
+                         [](const auto& test) { return test.param.name; });
+
+struct CalmCase {
+  const char* name;
+  const char* scenario;
+};
+
+class ExplainedWithoutPush : public Explain, public ::testing::WithParamInterface<CalmCase> {};
+
+TEST_P(ExplainedWithoutPush, NobodyIsBlamedForTheGroundsForces) {
+  const Evidence evidence =
+      collect_evidence(run(std::string("name: calm\n") + GetParam().scenario));
+  ASSERT_FALSE(evidence.samples.empty());
+  for (const Detector detect : detectors()) {
+    const std::optional<Clue> clue = detect(evidence);
+    EXPECT_FALSE(clue && clue->cause == Cause::push) << clue->sentence;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ExplainedWithoutPush,
+    ::testing::Values(
+        CalmCase{"leap", "slabs: [{x_m: [-1.0, 4.0]}]\ngoal: {jumps: 1}\n"},
+        CalmCase{"jump_down",
+                 "slabs: [{x_m: [-1.0, 0.2]}, {x_m: [0.2, 4.0], top_m: -0.25}]\n"
+                 "goal: {jumps: 1}\n"},
+        CalmCase{"gap", "slabs: [{x_m: [-1.0, 0.15]}, {x_m: [0.35, 4.0]}]\ngoal: {jumps: 1}\n"},
+        CalmCase{"heel_on_a_hidden_step",
+                 "slabs: [{x_m: [-1.0, 0.175]}, {x_m: [0.275, 0.625]}, {x_m: [0.725, 4.0]}]\n"
+                 "goal: {jumps: 1}\nsurprises: [{slab: 1, top_m: 0.02}]\n"},
+        CalmCase{"ground_30_cm_too_low",
+                 "slabs: [{x_m: [-1.0, 0.25]}, {x_m: [0.25, 4.0]}]\ngoal: {jumps: 1}\n"
+                 "surprises: [{slab: 1, top_m: -0.30}]\n"},
+        CalmCase{"step_12_cm_too_high",
+                 "slabs: [{x_m: [-1.0, 0.25]}, {x_m: [0.25, 4.0]}]\ngoal: {jumps: 1}\n"
+                 "surprises: [{slab: 1, top_m: 0.12}]\n"},
+        CalmCase{"slippery", "friction: 0.1\nslabs: [{x_m: [-1.0, 4.0]}]\ngoal: {jumps: 1}\n"},
+        CalmCase{"heavy_and_weak",
+                 "slabs: [{x_m: [-1.0, 4.0]}]\ngoal: {jumps: 1}\n"
+                 "plant: {mass_scale: 1.3, motor_strength: 0.6}\n"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST_F(Explain, ManyJumpsOfDriftAreNoCauseAndTheBlackBoxTellsTheSameTime) {
+  const RunFolder folder =
+      run("name: long\n"
+          "slabs:\n  - {x_m: [-1.0, 60.0]}\n"
+          "goal: {jumps: 30}\n"
+          "surprises:\n"
+          "  - {push: {phase: flight, occurrence: 20, after_s: 0.05, duration_s: 0.1, "
+          "impulse_Ns: [-14.0, 0.0, 0.0]}}\n",
+          "estimate");
+  const Explanation explanation = explain_run(folder);
+  EXPECT_EQ(explanation.first.cause, Cause::push) << to_text(explanation);
+  EXPECT_EQ(explanation.first.jump, 20);
+  EXPECT_GT(explanation.first.time, explanation.result.jumps.at(19).start);
+  EXPECT_LT(explanation.first.time, explanation.result.duration);
+  EXPECT_GT(explanation.result.duration, 20.0) << "else the black box holds it all";
+  EXPECT_EQ(to_text(explain_run({folder.black_box()})), to_text(explanation));
 }
 
 TEST_F(Explain, AnIcyLandingNamesTheSlip) {
