@@ -14,9 +14,12 @@ void BlackBox::remember(const msgs::Event& event) {
   }
 }
 
-void BlackBox::write(const std::filesystem::path& file) const {
+void BlackBox::write(const std::filesystem::path& file, const msgs::Event& scene) const {
   constexpr std::uint64_t kNobody = 0;  // the events carry their own sender
   msgs::RunLogWriter log(file, kNobody);
+  // A player waits from one moment to the next.
+  const core::Stamp begin = events_.empty() ? scene.now : events_.front().now;
+  log.write({begin, scene.channel, scene.bytes});
   for (const msgs::Event& event : events_) log.write(event);
   log.close();
 }

@@ -8,8 +8,8 @@
 
 namespace hopscotch::apps {
 
-/// Remembers the last seconds of all channels, to be written when something went wrong, even where
-/// no log is kept. One thread.
+/// Remembers the last seconds of what it is given, to be written when something went wrong, even
+/// where no log is kept. One thread.
 class BlackBox {
  public:
   static constexpr double kSeconds = 20.0;
@@ -18,8 +18,9 @@ class BlackBox {
   void remember(const msgs::Event& event);
 
   /// The remembered events as a log.
+  /// @param scene Stands first: a run tells it once, which may be long ago.
   /// @throws std::runtime_error if the disk refuses.
-  void write(const std::filesystem::path& file) const;
+  void write(const std::filesystem::path& file, const msgs::Event& scene) const;
 
   [[nodiscard]] std::size_t size() const { return events_.size(); }
   [[nodiscard]] std::size_t bytes() const { return bytes_; }

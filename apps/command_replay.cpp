@@ -61,6 +61,12 @@ void say(std::FILE* people, const ReplaySummary& summary) {
         people, "%d frames, %d looks; differing from the record: %d terrains, %d targets\n",
         summary.frames, summary.looks, summary.terrains_differing, summary.targets_differing);
   }
+  if (summary.homeless_readings > 0) {
+    std::fprintf(
+        people,
+        "the log does not hold where the estimator began (a black box begins in mid-run, a "
+        "run with --state truth has none): it was not run again\n");
+  }
   if (summary.states.compared + summary.plans.compared == 0) return;
   std::fprintf(people, "differing from the record: %d of %d states, %d of %d plans\n",
                summary.states.differing, summary.states.compared, summary.plans.differing,

@@ -31,7 +31,11 @@ void MotionReplay::prior(const msgs::EstimatorPrior& prior) {
 }
 
 void MotionReplay::sensors(const core::SensorReadings& readings) {
-  if (estimator_) estimator_->update(readings, expected_);
+  if (estimator_) {
+    estimator_->update(readings, expected_);
+  } else {
+    ++homeless_readings_;
+  }
 }
 
 void MotionReplay::state(const core::RobotState& recorded) {

@@ -33,6 +33,8 @@ class MotionReplay {
   void question(const msgs::TargetQuestion& asked);
   void plan(const core::JumpPlan& recorded);
 
+  /// Readings of a robot that the log does not say how it was put down.
+  [[nodiscard]] int homeless_readings() const { return homeless_readings_; }
   [[nodiscard]] const Agreement& states() const { return states_; }
   [[nodiscard]] const Agreement& plans() const { return plans_; }
 
@@ -43,6 +45,7 @@ class MotionReplay {
   control::ContactExpectation expected_ = control::ContactExpectation::support;
   SlopePlanner planner_;
   std::optional<core::RobotState> rest_;  ///< The stance of the last question.
+  int homeless_readings_ = 0;
   Agreement states_;
   Agreement plans_;
 };

@@ -195,7 +195,10 @@ void check_log(const fs::path& log, const msgs::RunLogSummary& read, const Repla
     reject(std::to_string(read.malformed) + " messages of known channels cannot be decoded");
   }
   if (replay.frames + replay.states.compared + replay.plans.compared == 0) {
-    reject("holds nothing that could be run again: no readings, no questions, no depth frames");
+    reject(std::string("holds nothing that could be run again: no depth frames, no plans, ") +
+           (replay.homeless_readings > 0
+                ? "and readings without where the estimator began (a black box begins in mid-run)"
+                : "no readings"));
   }
 }
 
@@ -270,6 +273,7 @@ ReplaySummary replay_log(const fs::path& log, const ProgramConfig& config,
   const msgs::RunLogSummary read = msgs::read_run_log(log, on);
   replay.finish_look();
   ReplaySummary summary = replay.summary();
+  summary.homeless_readings = motion.homeless_readings();
   summary.states = motion.states();
   summary.plans = motion.plans();
   check_log(log, read, summary);

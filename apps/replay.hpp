@@ -32,7 +32,8 @@ struct ReplaySummary {
   int looks = 0;
   int terrains_differing = 0;
   int targets_differing = 0;
-  Agreement states;  ///< Of the estimator.
+  int homeless_readings = 0;  ///< Of which the log does not say where the estimator began.
+  Agreement states;           ///< Of the estimator.
   Agreement plans;
 
   [[nodiscard]] int differing() const {

@@ -20,7 +20,7 @@ struct RunFolder {
   [[nodiscard]] std::filesystem::path video() const { return path / "video.mp4"; }
   /// Key frames, `<jump>-<instant>.png`.
   [[nodiscard]] std::filesystem::path frames() const { return path / "frames"; }
-  /// After a fall or fault: a run folder with the last seconds of all channels.
+  /// After a fall or fault: a run folder with the last seconds of all channels but depth.
   [[nodiscard]] std::filesystem::path black_box() const { return path / "black-box"; }
 };
 

@@ -90,7 +90,7 @@ RunRecorder::RunRecorder(const fs::path& folder, std::uint64_t run_id, const Run
       log_(partial_.log(), run_id),
       scene_(maker_.make({}, scene_of(request.scenario, request.plant_robot.name))) {
   write_sources(request, sources);
-  put(scene_);
+  write(scene_);
 }
 
 RunRecorder::~RunRecorder() {
@@ -117,6 +117,11 @@ void RunRecorder::add_listener(Listener listener) {
 
 void RunRecorder::put(const msgs::Event& event) {
   for (const Listener& listener : listeners_) listener(event);
+  keep(event);
+}
+
+/// What only a replay wants to know.
+void RunRecorder::keep(const msgs::Event& event) {
   black_box_.remember(event);
   write(event);
 }
@@ -216,7 +221,7 @@ void RunRecorder::record_prior(core::Stamp now, const PipelineEvents& events) {
                                .expected = static_cast<std::uint8_t>(*events.expected),
                                .height = told_height_.value_or(core::kNaN)};
     if (events.put_down) prior.start = {events.put_down->p_WS, events.put_down->yaw};
-    write(maker_.make(now, prior));
+    keep(maker_.make(now, prior));
   }
   expected_ = *events.expected;
   told_height_ = events.map_height;
@@ -238,7 +243,7 @@ void RunRecorder::write_black_box(const RunResult& result) const {
   const RunFolder box{partial_.black_box()};
   try {
     fs::create_directories(box.path);
-    black_box_.write(box.log());
+    black_box_.write(box.log(), scene_);
     for (const auto file : {&RunFolder::config, &RunFolder::robot, &RunFolder::scene}) {
       fs::copy_file((partial_.*file)(), (box.*file)());
     }
@@ -250,7 +255,7 @@ void RunRecorder::write_black_box(const RunResult& result) const {
 
 /// In the order in which the stages took them in: a replay does the same.
 void RunRecorder::record_perception(core::Stamp now, const PipelineEvents& events) {
-  if (events.anchor) write(maker_.make(now, msgs::AnchorRecord{*events.anchor}));
+  if (events.anchor) keep(maker_.make(now, msgs::AnchorRecord{*events.anchor}));
   if (events.seen != nullptr) {
     write(maker_.make(now, msgs::DepthRecord{events.seen->frame, events.seen->at_exposure}));
   }
@@ -259,15 +264,15 @@ void RunRecorder::record_perception(core::Stamp now, const PipelineEvents& event
 void RunRecorder::record_question(core::Stamp now, const PipelineEvents& events) {
   if (events.asked == nullptr) return;
   const footstep::LandingTask& task = events.asked->task;
-  write(maker_.make(now, msgs::TargetQuestion{.stamp = now,
-                                              .map_stamp = events.asked->map->stamp,
-                                              .rest = events.asked->rest,
-                                              .goal_x = task.goal_x,
-                                              .goal_heading = task.goal_heading,
-                                              .source = task.source,
-                                              .target = task.target,
-                                              .height_doubt = task.height_doubt,
-                                              .for_operator = events.asked->for_operator}));
+  keep(maker_.make(now, msgs::TargetQuestion{.stamp = now,
+                                             .map_stamp = events.asked->map->stamp,
+                                             .rest = events.asked->rest,
+                                             .goal_x = task.goal_x,
+                                             .goal_heading = task.goal_heading,
+                                             .source = task.source,
+                                             .target = task.target,
+                                             .height_doubt = task.height_doubt,
+                                             .for_operator = events.asked->for_operator}));
 }
 
 RunFolder RunRecorder::finish(const RunResult& result) {

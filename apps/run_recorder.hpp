@@ -49,7 +49,7 @@ class RunRecorder {
   void record(core::Stamp now, const core::OperatorAnswer& answer);
 
   /// Writes the result and gives the folder its name; after a fall or fault with the last seconds
-  /// of all channels in a folder `black-box` of its own. @return the finished folder.
+  /// of all channels but depth in a folder `black-box` of its own. @return the finished folder.
   RunFolder finish(const RunResult& result);
 
  private:
@@ -62,6 +62,7 @@ class RunRecorder {
   void record_prior(core::Stamp now, const PipelineEvents& events);
   [[nodiscard]] bool motion_due(const TickRecord& tick);
   void put(const msgs::Event& event);
+  void keep(const msgs::Event& event);
   void write(const msgs::Event& event);
   void close_log();
   template <typename Value>

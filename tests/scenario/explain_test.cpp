@@ -10,6 +10,7 @@
 #include "apps/evidence.hpp"
 #include "apps/explain.hpp"
 #include "apps/run_folder.hpp"
+#include "msgs/run_log.hpp"
 #include "tests/scenario/program.hpp"
 
 namespace hopscotch::apps {
@@ -143,15 +144,19 @@ INSTANTIATE_TEST_SUITE_P(
                  "plant: {mass_scale: 1.3, motor_strength: 0.6}\n"}),
     [](const auto& test) { return test.param.name; });
 
+/// Falls in the air.
+std::string pushed_in_jump(int jump) {
+  return "name: pushed-later\n"
+         "slabs:\n  - {x_m: [-1.0, 60.0]}\n"
+         "goal: {jumps: 30}\n"
+         "surprises:\n"
+         "  - {push: {phase: flight, occurrence: " +
+         std::to_string(jump) +
+         ", after_s: 0.05, duration_s: 0.1, impulse_Ns: [-14.0, 0.0, 0.0]}}\n";
+}
+
 TEST_F(Explain, ManyJumpsOfDriftAreNoCauseAndTheBlackBoxTellsTheSameTime) {
-  const RunFolder folder =
-      run("name: long\n"
-          "slabs:\n  - {x_m: [-1.0, 60.0]}\n"
-          "goal: {jumps: 30}\n"
-          "surprises:\n"
-          "  - {push: {phase: flight, occurrence: 20, after_s: 0.05, duration_s: 0.1, "
-          "impulse_Ns: [-14.0, 0.0, 0.0]}}\n",
-          "estimate");
+  const RunFolder folder = run(pushed_in_jump(20), "estimate");
   const Explanation explanation = explain_run(folder);
   EXPECT_EQ(explanation.first.cause, Cause::push) << to_text(explanation);
   EXPECT_EQ(explanation.first.jump, 20);
@@ -159,6 +164,48 @@ TEST_F(Explain, ManyJumpsOfDriftAreNoCauseAndTheBlackBoxTellsTheSameTime) {
   EXPECT_LT(explanation.first.time, explanation.result.duration);
   EXPECT_GT(explanation.result.duration, 20.0) << "else the black box holds it all";
   EXPECT_EQ(to_text(explain_run({folder.black_box()})), to_text(explanation));
+}
+
+/// How many of each kind stand in a log.
+struct Contents {
+  int scenes = 0, readings = 0, priors = 0, questions = 0, plans = 0, truths = 0;
+};
+
+Contents contents_of(const fs::path& log) {
+  Contents found;
+  msgs::RunLogHandlers on;
+  on.scene = [&](core::Stamp, const auto&) { ++found.scenes; };
+  on.sensors = [&](core::Stamp, const auto&) { ++found.readings; };
+  on.prior = [&](core::Stamp, const auto&) { ++found.priors; };
+  on.question = [&](core::Stamp, const auto&) { ++found.questions; };
+  on.plan = [&](core::Stamp, const auto&) { ++found.plans; };
+  on.truth = [&](core::Stamp, const auto&) { ++found.truths; };
+  (void)msgs::read_run_log(log, on);
+  return found;
+}
+
+TEST_F(Explain, TheBlackBoxOfALongRunHoldsItsLastSecondsAndThoseAreReplayed) {
+  const RunFolder folder = run(pushed_in_jump(20), "estimate");
+  const Contents found = contents_of(RunFolder{folder.black_box()}.log());
+  EXPECT_EQ(found.scenes, 1);
+  EXPECT_GT(found.readings, 19'000);
+  EXPECT_GT(found.priors, 30);
+  EXPECT_GT(found.questions, 15);
+  EXPECT_GT(found.plans, 15);
+  EXPECT_GT(found.truths, 1000);
+  const Answer answer = call("replay " + RunFolder{folder.black_box()}.log().string());
+  EXPECT_EQ(answer.status, 0) << answer.output;
+  EXPECT_NE(answer.output.find("a black box begins in mid-run"), std::string::npos);
+  EXPECT_NE(answer.output.find("0 of 0 states, 0 of 1"), std::string::npos)
+      << "ten plans or more, all as recorded: " << answer.output;
+}
+
+TEST_F(Explain, TheBlackBoxOfAShortRunIsReplayedWhole) {
+  const RunFolder folder = run(pushed_in_jump(1), "estimate");
+  const Answer answer = call("replay " + RunFolder{folder.black_box()}.log().string());
+  EXPECT_EQ(answer.status, 0) << answer.output;
+  EXPECT_EQ(answer.output.find("0 of 0 states"), std::string::npos) << answer.output;
+  EXPECT_NE(answer.output.find("0 of 1 plans"), std::string::npos) << answer.output;
 }
 
 TEST_F(Explain, AnIcyLandingNamesTheSlip) {

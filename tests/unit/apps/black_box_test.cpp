@@ -27,15 +27,22 @@ TEST(BlackBox, KeepsTheLastSecondsOnly) {
     box.remember(maker.make(state.stamp, state));
   }
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "black_box.lcm";
-  box.write(file);
+  box.write(file, maker.make({}, msgs::Scene{}));
   std::vector<double> times;
+  int scenes = 0;
   msgs::RunLogHandlers handlers;
+  handlers.scene = [&](core::Stamp now, const msgs::Tagged<msgs::Scene>&) {
+    ++scenes;
+    EXPECT_TRUE(times.empty()) << "it stands first";
+    EXPECT_NEAR(now.seconds(), 10.0, 1e-6) << "a player does not wait";
+  };
   handlers.state = [&](core::Stamp now, const msgs::Tagged<core::RobotState>& message) {
     times.push_back(now.seconds());
     EXPECT_EQ(message.tag.run_id, 5U);
   };
   msgs::read_run_log(file, handlers);
   std::filesystem::remove(file);
+  EXPECT_EQ(scenes, 1);
   ASSERT_EQ(times.size(), 201U);
   EXPECT_NEAR(times.front(), 10.0, 1e-6);
   EXPECT_NEAR(times.back(), 30.0, 1e-6);
