@@ -1,11 +1,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 
 #include "apps/commands.hpp"
 #include "apps/explain.hpp"
-#include "core/config_reader.hpp"
 
 namespace hopscotch::apps {
 
@@ -16,22 +14,10 @@ struct ExplainOptions {
   bool json = false;
 };
 
-/// A broken file is bad input, not a machine that lacks something.
-Explanation read_and_explain(const RunFolder& folder) try {
-  return explain_run(folder);
-} catch (const std::runtime_error& error) {
-  throw core::ConfigError(error.what());
-}
-
 ExitStatus explain(const ExplainOptions& options) {
   const RunFolder folder{options.folder};
-  for (const std::filesystem::path& file : {folder.result(), folder.log(), folder.robot()}) {
-    if (!std::filesystem::is_regular_file(file)) {
-      throw core::ConfigError(options.folder.string() +
-                              ": is no run folder: " + file.filename().string() + " is missing");
-    }
-  }
-  const Explanation explanation = read_and_explain(folder);
+  require_run_folder(folder);
+  const Explanation explanation = explain_run(folder);
   std::fputs(to_text(explanation).c_str(), options.json ? stderr : stdout);
   if (options.json) std::fputs(to_json(explanation).c_str(), stdout);
   return explanation.first.cause == Cause::unknown ? ExitStatus::answer_is_no : ExitStatus::ok;

@@ -5,7 +5,7 @@
 #include "apps/campaign/campaign.hpp"
 #include "apps/commands.hpp"
 #include "apps/report.hpp"
-#include "core/config_reader.hpp"
+#include "apps/run_folder.hpp"
 
 namespace hopscotch::apps {
 
@@ -23,9 +23,7 @@ void add_report_command(CLI::App& app, Action& action) {
         std::printf("%s\n", campaign.report().c_str());
         return ExitStatus::ok;
       }
-      if (!std::filesystem::is_regular_file(*folder / "result.json")) {
-        throw core::ConfigError(folder->string() + ": is no run folder: result.json is missing");
-      }
+      require_run_folder({*folder});
       write_report(*folder);
       std::printf("%s\n", (*folder / "report.html").c_str());
       return ExitStatus::ok;

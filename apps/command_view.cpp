@@ -11,7 +11,6 @@
 #include "apps/text_file.hpp"
 #include "apps/web_server.hpp"
 #include "apps/web_story.hpp"
-#include "core/config_reader.hpp"
 #include "msgs/run_log.hpp"
 
 namespace hopscotch::apps {
@@ -31,12 +30,7 @@ void wait_for_goodbye(const sigset_t& goodbyes) {
 
 ExitStatus view(const ViewOptions& options) {
   const RunFolder folder{options.folder};
-  for (const std::filesystem::path& file : {folder.result(), folder.log(), folder.robot()}) {
-    if (!std::filesystem::is_regular_file(file)) {
-      throw core::ConfigError(options.folder.string() +
-                              ": is no run folder: " + file.filename().string() + " is missing");
-    }
-  }
+  require_run_folder(folder);
   const RunResult result = read_run_result(folder.result());
   WebStory story(model::RobotParameters::load(folder.robot()),
                  {.run_id = result.run_id,

@@ -33,7 +33,9 @@ RawRun read(const RunFolder& folder) {
     raw.plans[message.value.id] = message.value;
   };
   handlers.target = [&](core::Stamp, const auto& message) { raw.choice = message.value; };
-  msgs::read_run_log(folder.log(), handlers);
+  if (msgs::read_run_log(folder.log(), handlers).events == 0) {
+    throw core::ConfigError(folder.log().string() + ": is no LCM log: it holds no message");
+  }
   return raw;
 }
 

@@ -24,4 +24,7 @@ struct RunFolder {
   [[nodiscard]] std::filesystem::path black_box() const { return path / "black-box"; }
 };
 
+/// @throws core::ConfigError naming the file that is missing: result, log or robot.
+void require_run_folder(const RunFolder& folder);
+
 }  // namespace hopscotch::apps

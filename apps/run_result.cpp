@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
 
+#include "apps/json_fields.hpp"
 #include "apps/text_file.hpp"
 
 namespace hopscotch::apps {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = JsonFields::Json;
 
 constexpr std::array<RunOutcome, 5> kRunOutcomes{RunOutcome::completed, RunOutcome::refused,
                                                  RunOutcome::fell, RunOutcome::fault,
@@ -110,99 +109,71 @@ Json run_json(const RunResult& result) {
       {"timing", timing_json(result.timing)}};
 }
 
-double number_from(const Json& object, const char* key) {
-  const Json& value = object.at(key);
-  return value.is_null() ? core::kNaN : value.get<double>();
-}
-
 /// NaN too in folders of programs that did not write it yet.
-double later_number_from(const Json& object, const char* key) {
-  return object.contains(key) ? number_from(object, key) : core::kNaN;
+double later_number(const JsonFields& object, const char* key) {
+  return object.has(key) ? object.number(key) : core::kNaN;
 }
 
 /// The value whose name stands under `key`.
 template <typename Values, typename Name>
-auto named_from(const Json& object, const char* key, const Values& values, Name name) {
-  const auto text = object.at(key).get<std::string>();
+auto named(const JsonFields& object, const char* key, const Values& values, Name name) {
+  const std::string text = object.text(key);
   const auto found =
       std::find_if(values.begin(), values.end(), [&](auto value) { return name(value) == text; });
-  if (found == values.end()) {
-    throw std::runtime_error(std::string(key) + " = \"" + text + "\" is none of the known words");
-  }
+  if (found == values.end()) object.reject(key, "is none of the known words");
   return *found;
 }
 
-Percentiles percentiles_from(const Json& object, const char* key) {
-  const Json& p = object.at(key);
-  return {number_from(p, "p50"), number_from(p, "p99"), number_from(p, "max")};
+Percentiles percentiles_from(const JsonFields& p) {
+  return {p.number("p50"), p.number("p99"), p.number("max")};
 }
 
-RunTiming timing_from(const Json& json) {
+RunTiming timing_from(const JsonFields& json) {
   RunTiming timing;
-  timing.plan_ms = percentiles_from(json, "plan_ms");
-  timing.mpc_ms = percentiles_from(json, "mpc_ms");
-  timing.perception_ms = percentiles_from(json, "perception_ms");
-  timing.estimator_ms = percentiles_from(json, "estimator_ms");
-  timing.tick_ms = percentiles_from(json, "tick_ms");
-  timing.deadline_misses = json.at("deadline_misses").get<int>();
-  timing.real_time_factor = number_from(json, "real_time_factor");
+  timing.plan_ms = percentiles_from(json.object("plan_ms"));
+  timing.mpc_ms = percentiles_from(json.object("mpc_ms"));
+  timing.perception_ms = percentiles_from(json.object("perception_ms"));
+  timing.estimator_ms = percentiles_from(json.object("estimator_ms"));
+  timing.tick_ms = percentiles_from(json.object("tick_ms"));
+  timing.deadline_misses = json.count("deadline_misses");
+  timing.real_time_factor = json.number("real_time_factor");
   return timing;
 }
 
-JumpResult::Plan plan_from(const Json& json) {
+JumpResult::Plan plan_from(const JsonFields& json) {
   JumpResult::Plan plan;
-  plan.status = named_from(json, "status", kPlanStatuses, core::plan_status_name);
-  plan.iterations = json.at("iterations").get<int>();
-  plan.warm = json.at("warm").get<bool>();
-  plan.duration = number_from(json, "duration_s");
-  plan.binding_name = json.at("binding").at("name").get<std::string>();
-  plan.binding_margin = number_from(json.at("binding"), "margin");
+  plan.status = named(json, "status", kPlanStatuses, core::plan_status_name);
+  plan.iterations = json.count("iterations");
+  plan.warm = json.flag("warm");
+  plan.duration = json.number("duration_s");
+  const JsonFields binding = json.object("binding");
+  plan.binding_name = binding.text("name");
+  plan.binding_margin = binding.number("margin");
   return plan;
 }
 
-JumpResult jump_from(const Json& json) {
+JumpResult jump_from(const JsonFields& json) {
   JumpResult jump;
-  jump.index = json.at("index").get<int>();
-  jump.outcome = named_from(json, "outcome", kJumpOutcomes, jump_outcome_name);
-  jump.reason = json.at("reason").get<std::string>();
-  jump.start = later_number_from(json, "start_s");
-  const Json& target = json.at("target");
-  jump.target = {number_from(target, "distance_m"), number_from(target, "height_m"),
-                 named_from(target, "source", kTargetSources, core::target_source_name)};
-  const Json& landing = json.at("landing");
-  jump.landing = {number_from(landing, "distance_m"), number_from(landing, "height_m"),
-                  number_from(landing, "toe_margin_m"), number_from(landing, "heel_margin_m"),
-                  later_number_from(landing, "pitch_error_rad")};
-  jump.plan = plan_from(json.at("plan"));
-  const Json& takeoff = json.at("takeoff");
-  jump.takeoff = {number_from(takeoff, "speed_x_mps"), number_from(takeoff, "speed_z_mps"),
-                  number_from(takeoff, "estimate_error_mps")};
-  jump.flight = number_from(json, "flight_s");
-  const Json& peak = json.at("peak");
-  jump.peak = {number_from(peak, "torque_ratio"), number_from(peak, "speed_ratio"),
-               number_from(peak, "power_ratio"), number_from(peak, "normal_force_N")};
+  jump.index = json.count("index");
+  jump.outcome = named(json, "outcome", kJumpOutcomes, jump_outcome_name);
+  jump.reason = json.text("reason");
+  jump.start = later_number(json, "start_s");
+  const JsonFields target = json.object("target");
+  jump.target = {target.number("distance_m"), target.number("height_m"),
+                 named(target, "source", kTargetSources, core::target_source_name)};
+  const JsonFields landing = json.object("landing");
+  jump.landing = {landing.number("distance_m"), landing.number("height_m"),
+                  landing.number("toe_margin_m"), landing.number("heel_margin_m"),
+                  later_number(landing, "pitch_error_rad")};
+  jump.plan = plan_from(json.object("plan"));
+  const JsonFields takeoff = json.object("takeoff");
+  jump.takeoff = {takeoff.number("speed_x_mps"), takeoff.number("speed_z_mps"),
+                  takeoff.number("estimate_error_mps")};
+  jump.flight = json.number("flight_s");
+  const JsonFields peak = json.object("peak");
+  jump.peak = {peak.number("torque_ratio"), peak.number("speed_ratio"), peak.number("power_ratio"),
+               peak.number("normal_force_N")};
   return jump;
-}
-
-RunResult run_from(const Json& json) {
-  const auto schema = json.at("schema").get<std::string>();
-  if (schema != RunResult::kSchema) throw std::runtime_error("schema is \"" + schema + "\"");
-  RunResult result;
-  result.run_id = json.at("run_id").get<std::string>();
-  result.scenario = json.at("scenario").get<std::string>();
-  result.seed = json.at("seed").get<std::uint64_t>();
-  result.program = json.at("program").get<std::string>();
-  result.perception = json.at("perception").get<std::string>();
-  result.state = json.at("state").get<std::string>();
-  result.outcome = named_from(json, "outcome", kRunOutcomes, run_outcome_name);
-  result.reason = json.at("reason").get<std::string>();
-  result.duration = number_from(json, "duration_s");
-  for (const Json& jump : json.at("jumps")) result.jumps.push_back(jump_from(jump));
-  result.falls = json.at("falls").get<int>();
-  result.position_error = number_from(json.at("state_error"), "position_m");
-  result.pitch_error = number_from(json.at("state_error"), "pitch_rad");
-  result.timing = timing_from(json.at("timing"));
-  return result;
 }
 
 }  // namespace
@@ -262,11 +233,26 @@ std::string to_json(const RunResult& result) {
 }
 
 RunResult run_result_from_json(std::string_view text, const std::string& name) {
-  try {
-    return run_from(Json::parse(text));
-  } catch (const std::exception& error) {
-    throw std::runtime_error(name + ": " + error.what());
+  const JsonFields json = JsonFields::parse(text, name);
+  if (json.text("schema") != RunResult::kSchema) {
+    json.reject("schema", "must be " + std::string(RunResult::kSchema));
   }
+  RunResult result;
+  result.run_id = json.text("run_id");
+  result.scenario = json.text("scenario");
+  result.seed = json.seed("seed");
+  result.program = json.text("program");
+  result.perception = json.text("perception");
+  result.state = json.text("state");
+  result.outcome = named(json, "outcome", kRunOutcomes, run_outcome_name);
+  result.reason = json.text("reason");
+  result.duration = json.number("duration_s");
+  for (const JsonFields& jump : json.list("jumps")) result.jumps.push_back(jump_from(jump));
+  result.falls = json.count("falls");
+  result.position_error = json.object("state_error").number("position_m");
+  result.pitch_error = json.object("state_error").number("pitch_rad");
+  result.timing = timing_from(json.object("timing"));
+  return result;
 }
 
 void write_run_result(const std::filesystem::path& file, const RunResult& result) {

@@ -119,14 +119,16 @@ struct JumpTimes {
 [[nodiscard]] std::string to_json(const RunResult& result);
 
 /// @param name Stands for the source in messages.
-/// @throws std::runtime_error naming the source and what is wrong with it.
+/// @throws core::ConfigError naming the source, the key, its value and the rule.
 [[nodiscard]] RunResult run_result_from_json(std::string_view text, const std::string& name);
 
 /// Writes beside the file first and renames, so that it is whole or not there.
 /// @throws std::runtime_error if the disk refuses.
 void write_run_result(const std::filesystem::path& file, const RunResult& result);
 
-/// @throws std::runtime_error naming the file and what is wrong with it.
+/// @throws core::ConfigError naming the file, the key, its value and the rule; std::runtime_error
+/// if
+///         it cannot be read.
 [[nodiscard]] RunResult read_run_result(const std::filesystem::path& file);
 
 }  // namespace hopscotch::apps

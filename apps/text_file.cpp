@@ -12,8 +12,8 @@ std::string read_file(const std::filesystem::path& file) {
   std::ostringstream content;
   // An empty file is read too; putting no character would count as a failure.
   if (stream.peek() != std::ifstream::traits_type::eof()) content << stream.rdbuf();
-  if (!stream.is_open() || stream.bad() || !content)
-    throw std::runtime_error("cannot read " + file.string());
+  const bool whole = stream.is_open() && !stream.bad() && !content.fail();
+  if (!whole) throw std::runtime_error("cannot read " + file.string());
   return content.str();
 }
 

@@ -12,6 +12,7 @@
 #include "apps/run_folder.hpp"
 #include "msgs/run_log.hpp"
 #include "tests/scenario/program.hpp"
+#include "tests/unit/apps/fake_run.hpp"
 
 namespace hopscotch::apps {
 namespace {
@@ -259,15 +260,50 @@ TEST_F(Explain, ARunThatWentWellNeedsNoExplanation) {
   EXPECT_EQ(call("explain " + folder.path.string()).status, 0);
 }
 
-TEST_F(Explain, WhatIsNoRunFolderIsNamed) {
-  EXPECT_EQ(call("explain " + folder_.string()).status, 2);
-  std::ofstream(folder_ / "result.json") << "{";
+struct BrokenFolder {
+  const char* name;
+  const char* file;     ///< That is replaced.
+  const char* content;  ///< Null: removed.
+  const char* says;
+};
+
+class BrokenRunFolder : public Explain, public ::testing::WithParamInterface<BrokenFolder> {};
+
+TEST_P(BrokenRunFolder, IsBadInputThatNamesTheFile) {
+  fake::write_run({folder_});
+  fs::remove(folder_ / GetParam().file);
+  if (GetParam().content != nullptr) {
+    std::ofstream(folder_ / GetParam().file) << GetParam().content;
+  }
+  for (const char* command : {"explain ", "report ", "view "}) {
+    const Answer answer = call(command + folder_.string());
+    EXPECT_EQ(answer.status, 2) << command << answer.output;
+    EXPECT_NE(answer.output.find(GetParam().file), std::string::npos) << answer.output;
+    EXPECT_NE(answer.output.find(GetParam().says), std::string::npos) << answer.output;
+    EXPECT_EQ(answer.output.find("json.exception"), std::string::npos) << answer.output;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BrokenRunFolder,
+    ::testing::Values(
+        BrokenFolder{"no_result", "result.json", nullptr, "is missing"},
+        BrokenFolder{"no_log", "run.lcm", nullptr, "is missing"},
+        BrokenFolder{"no_robot", "robot.yaml", nullptr, "is missing"},
+        BrokenFolder{"empty_result", "result.json", "", "is empty"},
+        BrokenFolder{"cut_result", "result.json", "{", "is no JSON"},
+        BrokenFolder{"foreign_result", "result.json", "{\"a\": 1}", "schema is missing"},
+        BrokenFolder{"other_schema", "result.json", "{\"schema\": \"hopscotch.run/2\"}",
+                     "schema = \"hopscotch.run/2\", but must be hopscotch.run/1"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST_F(Explain, ALogThatIsNoneIsNamed) {
+  fake::write_run({folder_});
+  std::ofstream(folder_ / "config.yaml") << "scenario: {}\n";
   std::ofstream(folder_ / "run.lcm") << "no log";
-  fs::copy_file(fs::path(HOPSCOTCH_SOURCE_DIR) / "config/robots/hector.yaml",
-                folder_ / "robot.yaml");
   const Answer answer = call("explain " + folder_.string());
   EXPECT_EQ(answer.status, 2) << answer.output;
-  EXPECT_NE(answer.output.find("result.json"), std::string::npos) << answer.output;
+  EXPECT_NE(answer.output.find("run.lcm: is no LCM log"), std::string::npos) << answer.output;
 }
 
 TEST_F(Explain, ARunGoesOnWhenItsLogFindsNoRoom) {

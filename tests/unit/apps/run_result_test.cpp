@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/config_reader.hpp"
 #include "tests/unit/apps/fake_run.hpp"
 
 namespace hopscotch::apps {
@@ -88,7 +89,8 @@ TEST_P(BrokenRunResult, IsRefusedByNameAndReason) {
   try {
     (void)run_result_from_json(text, "some/result.json");
     FAIL() << "accepted";
-  } catch (const std::runtime_error& error) {
+  } catch (const core::ConfigError& error) {
+    EXPECT_EQ(std::string(error.what()).find("json.exception"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("some/result.json"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find(GetParam().message), std::string::npos)
         << error.what();
@@ -99,10 +101,32 @@ INSTANTIATE_TEST_SUITE_P(
     All, BrokenRunResult,
     testing::Values(Broken{"schema", "hopscotch.run/1", "hopscotch.run/9", "hopscotch.run/9"},
                     Broken{"outcome", "\"completed\"", "\"won\"", "\"won\""},
-                    Broken{"missing", "\"falls\"", "\"fails\"", "falls"},
-                    Broken{"type", "\"seed\": 7", "\"seed\": \"7\"", "must be number"},
-                    Broken{"syntax", "{", "{{", "parse error"}),
+                    Broken{"missing", "\"falls\"", "\"fails\"", ": falls is missing"},
+                    Broken{"type", "\"seed\": 7", "\"seed\": \"7\"",
+                           "seed = \"7\", but must be a whole number from 0 on"},
+                    Broken{"negative", "\"index\": 1", "\"index\": -1", "jumps[0].index = -1, but"},
+                    Broken{"object", "\"timing\": {", "\"timing\": 3, \"was\": {",
+                           "timing = 3, but must be an object"},
+                    Broken{"list", "\"jumps\": [", "\"jumps\": [5, ", "must be a list of objects"},
+                    Broken{"number", "\"toe_margin_m\": 0.06", "\"toe_margin_m\": true",
+                           "jumps[0].landing.toe_margin_m = true, but must be a number or null"},
+                    Broken{"syntax", "{", "{{", "result.json:1: is no JSON"}),
     [](const auto& broken) { return broken.param.name; });
+
+TEST(RunResult, NothingAndForeignJsonAreNamed) {
+  const auto complaint = [](const char* text) -> std::string {
+    try {
+      (void)run_result_from_json(text, "r.json");
+    } catch (const core::ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint(""), "r.json:1: is empty");
+  EXPECT_EQ(complaint("{\n\"a\": 1,\n"), "r.json:3: is no JSON, or is cut short");
+  EXPECT_EQ(complaint("[1]"), "r.json: must be a JSON object");
+  EXPECT_EQ(complaint("{}"), "r.json: schema is missing");
+}
 
 TEST(RunResult, FileIsWholeOrNotThere) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "run_result_file";
