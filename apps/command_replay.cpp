@@ -8,6 +8,7 @@
 #include "apps/commands.hpp"
 #include "apps/installation.hpp"
 #include "apps/replay.hpp"
+#include "apps/run_config.hpp"
 #include "apps/scene_pictures.hpp"
 #include "apps/text_file.hpp"
 
@@ -17,9 +18,9 @@ namespace {
 
 struct ReplayOptions {
   std::filesystem::path log;
-  std::filesystem::path config = config_directory() / "hopscotch.yaml";
+  std::filesystem::path config;  ///< Empty: of the run folder, or the installed one.
   std::filesystem::path out;
-  std::string robot = "hector";
+  std::string robot;  ///< Likewise.
   DepthOptions depth;
   bool json = false;
 };
@@ -73,9 +74,31 @@ void say(std::FILE* people, const ReplaySummary& summary) {
                summary.plans.compared);
 }
 
+/// What is to be looked at again, and with what.
+struct Sources {
+  std::filesystem::path log;
+  std::filesystem::path config;
+  std::filesystem::path robot;
+};
+
+Sources sources_of(const ReplayOptions& options) {
+  Sources sources{options.log, options.config, {}};
+  const RunFolder folder{options.log};
+  const bool is_run = std::filesystem::is_regular_file(folder.log());
+  if (is_run) sources.log = folder.log();
+  if (sources.config.empty()) {
+    sources.config = is_run ? folder.config() : config_directory() / "hopscotch.yaml";
+  }
+  const bool own = is_run && options.robot.empty();
+  sources.robot = own ? believed_robot_file(folder)
+                      : robot_file(options.robot.empty() ? "hector" : options.robot);
+  return sources;
+}
+
 ExitStatus replay(const ReplayOptions& options) {
-  const ProgramConfig config = ProgramConfig::load(options.config);
-  const model::RobotParameters robot = model::RobotParameters::load(robot_file(options.robot));
+  const Sources sources = sources_of(options);
+  const ProgramConfig config = ProgramConfig::load(sources.config);
+  const model::RobotParameters robot = model::RobotParameters::load(sources.robot);
   if (!options.out.empty()) std::filesystem::create_directories(options.out);
   std::FILE* people = options.json ? stderr : stdout;
   std::string lines;
@@ -89,9 +112,9 @@ ExitStatus replay(const ReplayOptions& options) {
     draw(options.out, number++, look);
   };
   const ReplaySummary summary =
-      std::filesystem::is_directory(options.log)
-          ? replay_folder(options.log, options.depth.scaling(), config, robot, observe)
-          : replay_log(options.log, config, robot, observe);
+      std::filesystem::is_directory(sources.log)
+          ? replay_folder(sources.log, options.depth.scaling(), config, robot, observe)
+          : replay_log(sources.log, config, robot, observe);
   if (!options.out.empty()) write_file_atomically(options.out / "terrain.jsonl", lines);
   say(people, summary);
   return summary.differing() == 0 ? ExitStatus::ok : ExitStatus::answer_is_no;
@@ -106,17 +129,21 @@ void add_replay_command(CLI::App& app, Action& action) {
       "Estimator and planner run again, and perception and target choice if the log was recorded\n"
       "with `run --log-depth`. What comes out is compared bit by bit with what the log holds; "
       "exit\n"
-      "status 1 says that something differs. A folder holds 16-bit depth images and perhaps a text "
+      "status 1 says that something differs. A run folder is taken with its own tuning and robot.\n"
+      "A folder of images holds 16-bit depth images and perhaps a text "
       "file *pose*.txt with a line \"[stamp] tx ty tz qx qy qz qw\" "
       "each.\n"
-      "Example: hopscotch replay runs/stones-1/run.lcm --out runs/stones-1/replay");
+      "Example: hopscotch replay runs/stones-1 --out runs/stones-1/replay");
   const auto options = std::make_shared<ReplayOptions>();  // shared with the action below
-  command->add_option("LOG", options->log, "LCM log, or folder of depth images")->required();
+  command->add_option("LOG", options->log, "Run folder, LCM log, or folder of depth images")
+      ->required();
   command->add_option("--out", options->out, "Write pictures and terrain.jsonl to this folder");
-  command->add_option("--robot", options->robot, "Robot that recorded the log")
-      ->capture_default_str();
+  command->add_option("--robot", options->robot,
+                      "Robot that recorded the log [of the run folder, else hector]");
   add_depth_options(*command, options->depth);
-  command->add_option("--config", options->config, "Tuning")->capture_default_str();
+  command->add_option("--config", options->config,
+                      "Tuning; also config.yaml of a run [of the run folder, else " +
+                          (config_directory() / "hopscotch.yaml").string() + "]");
   command->add_flag("--json", options->json, "Print one JSON object for each look");
   command->callback([&action, options] { action = [options] { return replay(*options); }; });
 }

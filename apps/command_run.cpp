@@ -19,6 +19,7 @@
 #include "apps/pacer.hpp"
 #include "apps/report.hpp"
 #include "apps/run_attendant.hpp"
+#include "apps/run_config.hpp"
 #include "apps/run_recorder.hpp"
 #include "apps/stopwatch.hpp"
 #include "apps/text_file.hpp"
@@ -78,8 +79,8 @@ Prepared prepare(const RunOptions& options) {
   request.ablation = core::ablation_from_name(options.ablation).value();  // checked by the parser
   request.log_depth = options.log_depth;
   request.eyes = options.perception == "truth" ? Eyes::truth : Eyes::camera;
-  prepared.sources = {read_file(options.scenario), read_file(options.config),
-                      read_file(robot_file(request.scenario.plant.robot))};
+  prepared.sources = {read_file(options.scenario), tuning_text(options.config),
+                      robot_text(request.scenario.plant.robot)};
   return prepared;
 }
 

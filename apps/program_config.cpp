@@ -28,7 +28,8 @@ RuntimeConfig RuntimeConfig::load(const core::ConfigReader& section) {
 }
 
 ProgramConfig ProgramConfig::load(const std::filesystem::path& file) {
-  const core::ConfigReader root = core::ConfigReader::from_file(file);
+  const core::ConfigReader whole = core::ConfigReader::from_file(file);
+  const core::ConfigReader root = whole.section_if("configuration").value_or(whole);
   ProgramConfig config;
   config.runtime = RuntimeConfig::load(root.section("runtime"));
   config.threads = ThreadsConfig::load(root.section("threads"));

@@ -32,7 +32,7 @@ struct RuntimeConfig {
   static RuntimeConfig load(const core::ConfigReader& section);
 };
 
-/// `config/hopscotch.yaml`, whole.
+/// `config/hopscotch.yaml`, whole, or the same out of the `config.yaml` of a run folder.
 struct ProgramConfig {
   RuntimeConfig runtime;
   ThreadsConfig threads;

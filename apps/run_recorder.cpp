@@ -2,13 +2,13 @@
 
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "apps/installation.hpp"
 #include "apps/live_run.hpp"
 #include "apps/map_view.hpp"
+#include "apps/run_config.hpp"
 #include "apps/text_file.hpp"
 #include "core/config_reader.hpp"
 #include "sim/scene_builder.hpp"
@@ -38,13 +38,6 @@ fs::path make_partial(const fs::path& folder) {
   fs::remove_all(partial);
   fs::create_directories(partial);
   return partial;
-}
-
-std::string indented(const std::string& text) {
-  std::istringstream lines(text);
-  std::string result;
-  for (std::string line; std::getline(lines, line);) result += "  " + line + "\n";
-  return result;
 }
 
 msgs::Scene scene_of(const sim::Scenario& scenario, const std::string& robot) {
@@ -101,10 +94,7 @@ RunRecorder::~RunRecorder() {
 
 void RunRecorder::write_sources(const RunRequest& request, const RunSources& sources) const {
   write_file_atomically(partial_.config(),
-                        "# Scenario and configuration of this run, as used.\n"
-                        "scenario:\n" +
-                            indented(sources.scenario) + "configuration:\n" +
-                            indented(sources.configuration));
+                        run_config_text(sources.scenario, sources.configuration));
   write_file_atomically(partial_.robot(), sources.robot);
   write_file_atomically(partial_.scene(),
                         sim::scene_mjcf(request.plant_robot, request.scenario.true_terrain()));

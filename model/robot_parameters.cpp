@@ -126,9 +126,12 @@ RobotParameters read_complete(const ConfigReader& file) {
   return robot;
 }
 
-/// A robot that is another one with some motors exchanged.
+/// A robot that is another one with some motors exchanged. The other one stands in a file beside,
+/// or under `base`.
 RobotParameters read_variant(const ConfigReader& file, const std::filesystem::path& folder) {
-  const ConfigReader base = ConfigReader::from_file(folder / (file.text("based_on") + ".yaml"));
+  const std::string name = file.text("based_on") + ".yaml";
+  const auto enclosed = file.section_if("base");
+  const ConfigReader base = enclosed ? *enclosed : ConfigReader::from_file(folder / name);
   if (base.has("based_on")) file.reject("based_on", "must name a robot that is complete in itself");
   RobotParameters robot = read_complete(base);
   robot.name = file.text("name");

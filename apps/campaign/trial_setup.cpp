@@ -5,6 +5,7 @@
 
 #include "apps/campaign/scenario_text.hpp"
 #include "apps/installation.hpp"
+#include "apps/run_config.hpp"
 #include "apps/text_file.hpp"
 
 namespace hopscotch::apps::campaign {
@@ -162,7 +163,7 @@ TrialMaker::TrialMaker(const CampaignSpec& spec) : spec_(spec) {
                                   [](const Factor& f) { return f.name == "plant.robot"; });
   if (varied) names.insert(names.end(), kRobots.begin(), kRobots.end());
   for (const std::string& name : names) {
-    robots_[name] = {read_file(robot_file(name)), model::RobotParameters::load(robot_file(name))};
+    robots_[name] = {robot_text(name), model::RobotParameters::load(robot_file(name))};
   }
   check_cells();
 }
