@@ -38,6 +38,10 @@ void JumpScorer::update(const sim::PlantTruth& truth, const core::RobotState& us
   if (open_) follow(truth, used);
 }
 
+void JumpScorer::replanned() {
+  if (open_) ++jumps_.back().plan.replanned;
+}
+
 void JumpScorer::begin(const sim::PlantTruth& truth, const core::JumpPlan& plan) {
   takeoff_ = sim::takeoff_place(truth);
   peaks_ = {};

@@ -25,6 +25,9 @@ class JumpScorer {
   void update(const sim::PlantTruth& truth, const core::RobotState& used,
               const core::ControlStatus& status, const core::JumpPlan& plan);
 
+  /// What is left of the jump under way was planned anew.
+  void replanned();
+
   /// The robot fell: ends the jump under way, if there is one.
   void fell(const core::Refusal& reason);
 

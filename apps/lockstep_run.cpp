@@ -144,6 +144,7 @@ bool LockstepRun::step(const std::function<void(const TickRecord&)>& observe) {
                                                   : pipeline_.tick(readings, camera);
   plant_.notify_phase(jump_phase(pipeline_.status().phase));
   scorer_.update(truth, pipeline_.state(), pipeline_.status(), pipeline_.plan());
+  if (pipeline_.events().replanned) scorer_.replanned();
   collect_times();
   compare(truth);
   if (observe) {
@@ -157,6 +158,7 @@ bool LockstepRun::step(const std::function<void(const TickRecord&)>& observe) {
 void LockstepRun::collect_times() {
   const PipelineEvents& events = pipeline_.events();
   if (events.planning_ms) samples_.plan_ms.push_back(*events.planning_ms);
+  if (events.replanning_ms) samples_.replan_ms.push_back(*events.replanning_ms);
   if (events.mpc_ms) samples_.mpc_ms.push_back(*events.mpc_ms);
   if (events.perception_ms) samples_.perception_ms.push_back(*events.perception_ms);
   if (events.estimator_ms) samples_.estimator_ms.push_back(*events.estimator_ms);
@@ -228,6 +230,7 @@ RunResult LockstepRun::result() const {
   RunResult result = result_;
   result.jumps = scorer_.jumps();
   result.timing.plan_ms = Percentiles::of(samples_.plan_ms);
+  result.timing.replan_ms = Percentiles::of(samples_.replan_ms);
   result.timing.mpc_ms = Percentiles::of(samples_.mpc_ms);
   result.timing.perception_ms = Percentiles::of(samples_.perception_ms);
   result.timing.estimator_ms = Percentiles::of(samples_.estimator_ms);

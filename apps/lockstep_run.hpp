@@ -88,7 +88,7 @@ class LockstepRun {
   [[nodiscard]] core::Stamp now() const { return plant_.now(); }
   /// Wall times of the stages so far [ms].
   struct StageSamples {
-    std::vector<double> plan_ms, mpc_ms, perception_ms, estimator_ms, tick_ms;
+    std::vector<double> plan_ms, replan_ms, mpc_ms, perception_ms, estimator_ms, tick_ms;
     std::size_t allocations = 0;  ///< In estimator and control tick.
   };
   [[nodiscard]] const Pipeline& pipeline() const { return pipeline_; }

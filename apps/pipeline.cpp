@@ -233,7 +233,7 @@ void Pipeline::replan(core::Stamp now) {
     events_.replanned = control_->replace_rest(***rest, rest_place_);
     mpc_urgent_ = mpc_urgent_ || events_.replanned;
   }
-  (void)rest_.made();  // nobody records them
+  if (rest_.made() != nullptr) events_.replanning_ms = rest_.work_ms();
   const bool lands = control_->phase() == RobotPhase::landing;
   const RuntimeConfig& runtime = config_.runtime;
   if (!(lands ? runtime.landing_replanning : runtime.takeoff_replanning)) return;

@@ -64,6 +64,7 @@ struct PipelineEvents {
   std::vector<core::OperatorAnswer> answers;  ///< To commands of the operator.
   std::optional<double> perception_ms;        ///< Wall time of the stage in this tick.
   std::optional<double> planning_ms;
+  std::optional<double> replanning_ms;
   std::optional<double> mpc_ms;
   std::optional<double> estimator_ms;
   double tick_ms = 0.0;

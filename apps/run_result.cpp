@@ -39,6 +39,7 @@ Json percentiles_json(const Percentiles& p) {
 
 Json timing_json(const RunTiming& timing) {
   return {{"plan_ms", percentiles_json(timing.plan_ms)},
+          {"replan_ms", percentiles_json(timing.replan_ms)},
           {"mpc_ms", percentiles_json(timing.mpc_ms)},
           {"perception_ms", percentiles_json(timing.perception_ms)},
           {"estimator_ms", percentiles_json(timing.estimator_ms)},
@@ -51,6 +52,7 @@ Json plan_json(const JumpResult::Plan& plan) {
   return {{"status", core::plan_status_name(plan.status)},
           {"iterations", plan.iterations},
           {"warm", plan.warm},
+          {"replanned", plan.replanned},
           {"duration_s", number(plan.duration)},
           {"binding", {{"name", plan.binding_name}, {"margin", number(plan.binding_margin)}}}};
 }
@@ -131,6 +133,7 @@ Percentiles percentiles_from(const JsonFields& p) {
 RunTiming timing_from(const JsonFields& json) {
   RunTiming timing;
   timing.plan_ms = percentiles_from(json.object("plan_ms"));
+  if (json.has("replan_ms")) timing.replan_ms = percentiles_from(json.object("replan_ms"));
   timing.mpc_ms = percentiles_from(json.object("mpc_ms"));
   timing.perception_ms = percentiles_from(json.object("perception_ms"));
   timing.estimator_ms = percentiles_from(json.object("estimator_ms"));
@@ -145,6 +148,7 @@ JumpResult::Plan plan_from(const JsonFields& json) {
   plan.status = named(json, "status", kPlanStatuses, core::plan_status_name);
   plan.iterations = json.count("iterations");
   plan.warm = json.flag("warm");
+  if (json.has("replanned")) plan.replanned = json.count("replanned");
   plan.duration = json.number("duration_s");
   const JsonFields binding = json.object("binding");
   plan.binding_name = binding.text("name");

@@ -39,6 +39,7 @@ struct JumpResult {
     core::PlanStatus status = core::PlanStatus::bad_input;
     int iterations = 0;
     bool warm = false;
+    int replanned = 0;             ///< So often what was left of the jump was planned anew.
     double duration = core::kNaN;  ///< [s]
     std::string binding_name;      ///< Tightest line of the certificate.
     double binding_margin = core::kNaN;
@@ -80,6 +81,7 @@ struct Percentiles {
 /// The only part that may differ between equal runs.
 struct RunTiming {
   Percentiles plan_ms;
+  Percentiles replan_ms;
   Percentiles mpc_ms;
   Percentiles perception_ms;
   Percentiles estimator_ms;

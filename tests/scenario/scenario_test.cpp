@@ -369,9 +369,13 @@ ReplannedJumps run_replanned(bool takeoff, bool landing, const Predicate& may_re
   jumps.result = run.result();
   EXPECT_EQ(jumps.result.falls, 0) << jumps.result.reason;
   EXPECT_EQ(jumps.result.jumps.size(), 2U);
+  int told = 0;
   for (const JumpResult& jump : jumps.result.jumps) {
     EXPECT_NEAR(jump.landing.distance, jump.target.distance, 0.03);
+    told += jump.plan.replanned;
   }
+  EXPECT_EQ(told, jumps.replanned);
+  EXPECT_GT(jumps.result.timing.replan_ms.p50, 0.0);
   return jumps;
 }
 

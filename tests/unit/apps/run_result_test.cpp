@@ -25,6 +25,7 @@ TEST(RunResult, SurvivesTheFileUnchanged) {
   EXPECT_DOUBLE_EQ(read.jumps[1].landing.distance, 0.395);
   EXPECT_EQ(read.jumps[1].plan.binding_name, "knee power");
   EXPECT_TRUE(read.jumps[1].plan.warm);
+  EXPECT_EQ(read.jumps[1].plan.replanned, written.jumps[1].plan.replanned);
   EXPECT_DOUBLE_EQ(read.timing.plan_ms.p99, 260.0);
 }
 
