@@ -150,7 +150,7 @@ inline RunResult result() {
     jump.start = kStand + (kStand + kJump) * (index - 1);
     jump.target = {kDistance, 0.0, core::TargetSource::perception};
     jump.landing = {0.395, 0.001, 0.06, 0.05, 0.08};
-    jump.plan = {core::PlanStatus::solved, 18, index > 1, kJump, "knee power", 0.12};
+    jump.plan = {core::PlanStatus::solved, 18, index > 1, 27, kJump, "knee power", 0.12};
     jump.takeoff = {1.1, 1.6, core::kNaN};
     jump.flight = kFlight;
     jump.peak = {0.81, 0.9, 0.95, 610.0};
