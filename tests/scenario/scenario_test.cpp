@@ -270,7 +270,7 @@ TEST(Scenario, JumpsAreLandedWithoutAnyAnswerOfTheMpc) {
 }
 
 TEST(Scenario, JumpsAreLandedWithAnAnswerNowAndThen) {
-  const Hindered some = leap_hindered(9, 0.001, 0.001);
+  const Hindered some = leap_hindered(8, 0.001, 0.001);
   expect_five_leaps(some.result);
   EXPECT_GT(some.unanswered, 0);
   EXPECT_GT(some.answered, 200);
