@@ -122,12 +122,14 @@ LockstepRun::LockstepRun(const RunRequest& request)
 /// around where it believes to be.
 Pipeline::TerrainOracle LockstepRun::oracle() const {
   if (request_.eyes == Eyes::camera) return {};
-  return [this](const core::RobotState& believed) {
+  return [this](const core::RobotState& believed) -> MapDrawing {
     const double yaw = model::rpy_from_rotation(believed.R_WB).z() -
                        model::rpy_from_rotation(true_state_.R_WB).z();
     const sim::Terrain around = sim::moved(request_.scenario.seen, true_state_.p_WB.head<2>(), yaw,
                                            believed.p_WB - true_state_.p_WB);
-    return sim::seen_terrain_map(around, believed.p_WB.head<2>(), believed.stamp);
+    return [around, centre = Eigen::Vector2d(believed.p_WB.head<2>()), stamp = believed.stamp] {
+      return sim::seen_terrain_map(around, centre, stamp);
+    };
   };
 }
 

@@ -304,15 +304,20 @@ void Pipeline::ask_where(const core::RobotState& state) {
   const auto jump = static_cast<std::size_t>(jumps_done_);
   if (!task.target && jump < mission_.targets.size()) task.target = mission_.targets[jump];
   events_.asked = &decision_.question();
-  decision_.question() = {map_,          hanging_, control_->rest_state(), task, for_operator_,
-                          ++plans_made_, state};
+  decision_.question() = {map_,
+                          hanging_,
+                          control_->rest_state(),
+                          task,
+                          for_operator_,
+                          ++plans_made_,
+                          oracle_ ? oracle_(state) : MapDrawing{}};
   decision_.ask(state.stamp);
 }
 
 /// On the planning stage's thread.
 void Pipeline::make_decision(const DecisionQuestion& question, Decision& decision) {
-  const auto& [seen, hanging, rest, task, for_operator, plan_id, now] = question;
-  const auto map = oracle_ ? std::make_shared<const core::TerrainMap>(oracle_(now)) : seen;
+  const auto& [seen, hanging, rest, task, for_operator, plan_id, draw_map] = question;
+  const auto map = draw_map ? std::make_shared<const core::TerrainMap>(draw_map()) : seen;
   const perception::OneStepConfig& one_step = config_.perception.one_step;
   decision.map = map;
   decision.terrain =

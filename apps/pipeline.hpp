@@ -102,6 +102,9 @@ struct Sight {
 };
 
 /// From where and over what to jump next.
+/// Draws what an oracle knew when it was asked, on any thread.
+using MapDrawing = std::function<core::TerrainMap()>;
+
 struct DecisionQuestion {
   std::shared_ptr<const core::TerrainMap> map;
   HangingThings hanging;
@@ -109,7 +112,7 @@ struct DecisionQuestion {
   footstep::LandingTask task;
   bool for_operator = false;  ///< `task.target` is the operator's.
   std::uint64_t plan_id = 0;
-  core::RobotState now;  ///< Where an oracle is asked from.
+  MapDrawing draw_map;  ///< An oracle's; empty: `map` is there.
 };
 
 struct Decision {
@@ -139,8 +142,8 @@ struct BalanceQuestion {
 /// counts from its declared latency on.
 class Pipeline {
  public:
-  /// Gives the terrain without looking, for `--perception truth`.
-  using TerrainOracle = std::function<core::TerrainMap(const core::RobotState&)>;
+  /// Knows the terrain without looking, for `--perception truth`. Asked in a tick, from a state.
+  using TerrainOracle = std::function<MapDrawing(const core::RobotState&)>;
 
   /// @param oracle Empty: the depth camera is all there is.
   Pipeline(const ProgramConfig& config, const model::RobotParameters& robot, const Mission& mission,

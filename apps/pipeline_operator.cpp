@@ -48,7 +48,7 @@ std::optional<DecisionView> Pipeline::decision_view() const {
   if (!core::is_standing(phase) && phase != RobotPhase::landing) return std::nullopt;
   DecisionView view;
   view.rest = control_->rest_state();
-  view.map = oracle_ ? oracle_(view.rest) : *map_;
+  view.map = oracle_ ? oracle_(view.rest)() : *map_;
   view.hanging = hanging_;
   const perception::OneStepConfig& one_step = config_.perception.one_step;
   view.terrain = perception::one_step_terrain(one_step, view.map,

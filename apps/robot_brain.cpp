@@ -21,8 +21,10 @@ Pipeline::TerrainOracle level_floor() {
   slab.half_size.setConstant(kHalfSize);
   sim::Terrain floor;
   floor.slabs.push_back(slab);
-  return [floor](const core::RobotState& state) {
-    return sim::seen_terrain_map(floor, state.p_WB.head<2>(), state.stamp);
+  return [floor](const core::RobotState& state) -> MapDrawing {
+    return [floor, centre = Eigen::Vector2d(state.p_WB.head<2>()), stamp = state.stamp] {
+      return sim::seen_terrain_map(floor, centre, stamp);
+    };
   };
 }
 
