@@ -71,6 +71,8 @@ check-deep: packages
 	ctest --preset asan
 	@scripts/build tsan
 	ctest --preset tsan
+	@for eyes in truth camera; do build/tsan/hopscotch run config/scenarios/flat-leaps.yaml --perception $$eyes \
+	    --threads --jumps 2 --pace 0.1 --no-pictures --out build/tsan/run-$$eyes || exit 1; done
 	@TARGETS="$(FUZZERS)" scripts/build fuzz
 	@for fuzzer in $(FUZZERS); do scripts/fuzz $$fuzzer $(FUZZ_SECONDS) || exit 1; done
 	@scripts/build release $(CMAKE_ARGS)
