@@ -88,7 +88,7 @@ std::string jumps_section(const RunRecord& run) {
   return section(
       "Jump by jump",
       "Margins are the support left beyond toe and heel at rest. Peaks are shares of the "
-      "motors’ limits as flown.",
+      "motors’ limits as flown. ×: how often the rest of the jump was planned anew.",
       card(draw_jump_table(run.result)) + (figures.empty() ? "" : grid(figures)));
 }
 

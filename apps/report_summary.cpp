@@ -88,8 +88,8 @@ std::string jump_row(const JumpResult& jump) {
   row += cell(fixed(jump.takeoff.speed_x, 2) + " / " + fixed(jump.takeoff.speed_z, 2)) +
          cell(fixed(jump.flight, 3));
   row += peaks_cell(jump.peak) + cell(fixed(jump.peak.normal_force, 0));
-  row += cell(std::to_string(jump.plan.iterations) + (jump.plan.warm ? " warm" : " cold") +
-              "; rest " + std::to_string(jump.plan.replanned) + " times");
+  row += cell(std::to_string(jump.plan.iterations) + (jump.plan.warm ? " warm" : " cold") + ", " +
+              std::to_string(jump.plan.replanned) + " ×");
   return row + cell(remark(jump)) + "</tr>\n";
 }
 
