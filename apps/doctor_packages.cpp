@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -89,6 +90,7 @@ std::string eigen_version() {
 std::vector<Finding> check_packages() {
   const std::map<std::string, fs::path> objects = loaded_objects();
   std::vector<Finding> findings;
+  findings.reserve(std::size(kLibraries) + 2);
   for (const Library& library : kLibraries) findings.push_back(check_library(library, objects));
   findings.push_back(compiled_in("Ceres", HOPSCOTCH_CERES_VERSION, "calibrate"));
   findings.push_back(compiled_in("Eigen", eigen_version(), "everything"));

@@ -24,6 +24,7 @@ struct BenchCase {
   std::vector<std::string> others;
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name that GoogleTest looks for
 void PrintTo(const BenchCase& tested, std::ostream* out) {
   *out << tested.arguments;
 }
