@@ -8,10 +8,14 @@ namespace {
 // Counting must not itself need the heap or a lock, hence at namespace scope.
 thread_local std::size_t g_count = 0;
 
-void* counted(std::size_t size, std::size_t alignment) {
+/// Null without memory.
+void* counted(std::size_t size, std::size_t alignment) noexcept {
   ++g_count;
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
-  void* memory = std::aligned_alloc(alignment, rounded > 0 ? rounded : alignment);
+  return std::aligned_alloc(alignment, rounded > 0 ? rounded : alignment);
+}
+
+void* or_throw(void* memory) {
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
@@ -19,10 +23,14 @@ void* counted(std::size_t size, std::size_t alignment) {
 }  // namespace
 
 void* operator new(std::size_t size) {
+  return or_throw(counted(size, alignof(std::max_align_t)));
+}
+/// std::stable_sort asks so.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return counted(size, alignof(std::max_align_t));
 }
 void* operator new(std::size_t size, std::align_val_t alignment) {
-  return counted(size, static_cast<std::size_t>(alignment));
+  return or_throw(counted(size, static_cast<std::size_t>(alignment)));
 }
 void operator delete(void* memory) noexcept {
   std::free(memory);

@@ -98,7 +98,7 @@ TEST(ConfigReader, UnknownKeyOfAListEntryIsNamedWithItsIndex) {
 
 TEST(ConfigReader, FinishAcceptsAMappingWhoseCopyWasRead) {
   const ConfigReader reader = read("mu: 0.5\n");
-  const ConfigReader copy = reader;
+  const ConfigReader copy = reader;  // NOLINT(performance-unnecessary-copy-initialization)
   EXPECT_EQ(copy.number("mu"), 0.5);
   EXPECT_NO_THROW(reader.finish());
 }

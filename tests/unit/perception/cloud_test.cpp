@@ -149,7 +149,7 @@ PointCloud step_in_view(double pitch) {
       const double top = ray.z() < 0.0 ? -0.5 / ray.z() : 99.0;
       if (top < depth && top * ray.x() > 0.8) depth = top;
       const double z = depth < 3.0 ? depth + noise(random) : core::kNaN;
-      cloud.points.push_back(
+      cloud.points.emplace_back(
           (z * Eigen::Vector3d((u - 160) / 190.0, (v - 120) / 190.0, 1.0)).cast<float>());
     }
   }
