@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/folder_test.hpp"
 #include "tests/scenario/program.hpp"
 
 namespace hopscotch {
@@ -78,17 +79,8 @@ std::string floor_ply(double unit) {
          "\nproperty float x\nproperty float y\nproperty float z\nend_header\n" + points;
 }
 
-class BadRecording : public ::testing::Test {
+class BadRecording : public FolderTest {
  protected:
-  BadRecording()
-      : folder_(fs::path(::testing::TempDir()) /
-                (std::string("hopscotch-bad-recording-") +
-                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~BadRecording() override { fs::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return (folder_ / name).string();
@@ -106,8 +98,6 @@ class BadRecording : public ::testing::Test {
     EXPECT_NE(answer.output.find(says), std::string::npos) << arguments << "\n" << answer.output;
     EXPECT_NE(answer.output.find(file), std::string::npos) << arguments << "\n" << answer.output;
   }
-
-  fs::path folder_;
 };
 
 TEST_F(BadRecording, ImagesOfTheWrongFormatOrCutShortAreRefused) {

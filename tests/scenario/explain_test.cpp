@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include "apps/explain.hpp"
 #include "apps/run_folder.hpp"
 #include "msgs/run_log.hpp"
+#include "tests/folder_test.hpp"
 #include "tests/scenario/program.hpp"
 #include "tests/unit/apps/fake_run.hpp"
 
@@ -19,24 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a test with parameters.
-std::string slashless(std::string name) {
-  std::replace(name.begin(), name.end(), '/', '-');
-  return name;
-}
-
 /// Runs with a made-up mishap, and what `explain` makes of them.
-class Explain : public ::testing::Test {
+class Explain : public FolderTest {
  protected:
-  Explain()
-      : folder_(fs::path(testing::TempDir()) /
-                ("explain-" +
-                 slashless(::testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Explain() override { fs::remove_all(folder_); }
-
   RunFolder run(const std::string& scenario, const std::string& state = "truth") const {
     std::ofstream(folder_ / "scenario.yaml") << scenario;
     const fs::path out = folder_ / "out";
@@ -44,8 +29,6 @@ class Explain : public ::testing::Test {
          " --perception truth --no-pictures --out " + out.string());
     return {out};
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Explain, AFallAfterAPushNamesThePushWithItsTime) {

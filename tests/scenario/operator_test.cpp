@@ -11,6 +11,7 @@
 #include "apps/live_run.hpp"
 #include "apps/operator_client.hpp"
 #include "apps/run_result.hpp"
+#include "tests/folder_test.hpp"
 #include "tests/scenario/own_network.hpp"
 #include "tests/scenario/program.hpp"
 
@@ -21,16 +22,10 @@ namespace fs = std::filesystem;
 using core::Reason;
 
 /// A run in real time on level ground, and an operator who talks to it.
-class OperatorOfARun : public ::testing::Test {
+class OperatorOfARun : public FolderTest {
  protected:
   static void SetUpTestSuite() { use_own_network(); }
-  // A folder for each test: ctest runs them side by side.
-  OperatorOfARun()
-      : folder_(fs::path(testing::TempDir()) /
-                (std::string("hopscotch-operator-") +
-                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+  OperatorOfARun() {
     std::ofstream(folder_ / "plain.yaml") << "name: plain\n"
                                              "slabs:\n"
                                              "  - {x_m: [-1.0, 60.0]}\n"
@@ -39,7 +34,6 @@ class OperatorOfARun : public ::testing::Test {
   ~OperatorOfARun() override {
     if (run_.valid()) call("command stop");
     if (run_.valid()) run_.wait();
-    fs::remove_all(folder_);
   }
 
   void start_run() {
@@ -66,7 +60,6 @@ class OperatorOfARun : public ::testing::Test {
     return ack ? ack->refusal.reason : Reason::internal_error;
   }
 
-  fs::path folder_;
   std::future<Answer> run_;
   std::optional<OperatorClient> client_;
   std::uint64_t id_ = 0;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/text_file.hpp"
+#include "tests/folder_test.hpp"
 #include "tests/scenario/program.hpp"
 
 namespace hopscotch::apps {
@@ -13,17 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class RunFolderKept : public ::testing::Test {
+class RunFolderKept : public FolderTest {
  protected:
-  RunFolderKept()
-      : folder_(fs::path(::testing::TempDir()) /
-                (std::string("run-folder-") +
-                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~RunFolderKept() override { fs::remove_all(folder_); }
-
   /// Of one leap into `name`.
   [[nodiscard]] Answer run(const std::string& name, const std::string& robot,
                            const std::string& options) const {
@@ -45,8 +37,6 @@ class RunFolderKept : public ::testing::Test {
     std::ofstream(folder_ / "other.yaml") << text;
     return at("other.yaml");
   }
-
-  fs::path folder_;
 };
 
 TEST_F(RunFolderKept, IsReplayedWithItsOwnTuning) {

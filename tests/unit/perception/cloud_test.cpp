@@ -15,6 +15,7 @@
 #include "perception/ground_frame.hpp"
 #include "perception/line_survey.hpp"
 #include "perception/plane_segmentation.hpp"
+#include "tests/folder_test.hpp"
 #include "tests/unit/perception/synthetic_terrain.hpp"
 
 /// Single recordings: files, planes, ground frame, map.
@@ -23,16 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class CloudFile : public ::testing::Test {
+class CloudFile : public FolderTest {
  protected:
-  CloudFile()
-      : folder_(fs::path(::testing::TempDir()) /
-                (std::string("cloud_file_") +
-                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::create_directories(folder_);
-  }
-  ~CloudFile() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& name, const std::string& content) const {
     std::ofstream(folder_ / name, std::ios::binary) << content;
     return folder_ / name;
@@ -54,8 +47,6 @@ class CloudFile : public ::testing::Test {
     }
     return "";
   }
-
-  fs::path folder_;
 };
 
 TEST_F(CloudFile, ReadsAsciiAndBinaryPcdAndPly) {
